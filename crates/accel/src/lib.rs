@@ -1,0 +1,1 @@
+//! Bounding volume hierarchy: conservative f32 culling for f64 primitives.

@@ -1,0 +1,1 @@
+//! Transient photon beams: photon tracing, ray-beam kernels and the gather.

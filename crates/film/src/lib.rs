@@ -1,0 +1,1 @@
+//! Transient film: time bins, temporal profiles, energy ledger, statistics over passes, and writers.

@@ -1,0 +1,1 @@
+//! Optical path length, spectra, phase functions, Fresnel, warps and RNG streams.

@@ -1,0 +1,1 @@
+//! Transient volumetric path tracer: the unbiased baseline.

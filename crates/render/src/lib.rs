@@ -1,0 +1,1 @@
+//! The pass loop: methods, budgets, progress, interruption and the report.

@@ -1,0 +1,1 @@
+//! Analytic time-dependent radiative transfer: closed forms and quadrature, no sampling.

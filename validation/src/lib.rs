@@ -1,0 +1,1 @@
+//! Validation: experiments, statistics of comparison, equal-time runs, negative controls.
