@@ -1,1 +1,23 @@
-//! Transient film: time bins, temporal profiles, energy ledger, statistics over passes, and writers.
+//! Floor 1: the transient film. It alone knows bins, windows and unwarp.
+//!
+//! Integrators hand a [`Strip`] an [`Arrival`] (an instant or a [`TemporalProfile`], times as
+//! optical path length in metres) with its time-integrated radiance \[W m^-2 sr^-1\];
+//! [`TransientFilm`] averages passes. The invariant everywhere, to rounding:
+//! sum over bins + before + after = steady image.
+
+mod arrival;
+mod error;
+mod film;
+mod layout;
+mod ledger;
+mod profile;
+mod quadrature;
+mod stats;
+mod strip;
+
+pub use arrival::{Arrival, TemporalProfile};
+pub use error::FilmError;
+pub use film::{FilmOptions, OutputChannels, TransientFilm};
+pub use layout::{Layout, TimeAxis};
+pub use ledger::Ledger;
+pub use strip::Strip;
