@@ -29,6 +29,7 @@ impl<const C: usize> Spectrum<C> {
     }
 
     /// Applies `f` to each channel.
+    #[must_use]
     #[inline]
     pub fn map(self, f: impl FnMut(f64) -> f64) -> Self {
         Self(self.0.map(f))

@@ -1,1 +1,27 @@
-//! Scene: loader, shapes, materials, media, emitters, sensor, and the plan of a run.
+//! Floor 1: the scene, from its file to what integrators ask of it.
+//!
+//! * [`load`]: JSON file → [`SceneParts`], with errors that name line, column, path and a hint;
+//!   [`description`] is its vocabulary and the source of the JSON schema.
+//! * [`Scene`]: shapes, media, emitters and camera, consistent; [`Scene::fly`] and
+//!   [`Scene::connect`] answer all questions about straight lines as a [`Flight`].
+//! * [`Plan`]: what a run of this scene needs, and what it leaves out.
+
+mod assemble;
+mod bsdf;
+mod emitter;
+mod flight;
+pub mod geometry;
+mod medium;
+mod plan;
+mod sensor;
+mod world;
+
+pub use assemble::{AssembleError, EmitterPart, SceneParts, ShapePart};
+pub use bsdf::{Bsdf, Dielectric, Reflector};
+pub use emitter::{Emission, Emitter, EmitterKind, Incident, LightPoint};
+pub use flight::{Flight, Hit, Span, Vertex};
+pub use geometry::Primitive;
+pub use medium::{Medium, MediumBoundary, MediumId, Region};
+pub use plan::{Item, Kernel, Media, Plan, Transport};
+pub use sensor::{FilmSpec, FovAxis, IntegratorSpec, MethodName, PixelFormat, Sensor, TimeSpec};
+pub use world::{Scene, Shape};

@@ -1,0 +1,281 @@
+//! The assembled scene, as integrators see it.
+
+use glam::DVec3;
+use smallvec::SmallVec;
+use tpb_accel::{Aabb, Bvh};
+use tpb_optics::{Rgb, Spectrum, Stream};
+
+use crate::emitter::EmittingSurface;
+use crate::{
+    Bsdf, Emission, Emitter, EmitterKind, FilmSpec, Flight, Hit, Incident, IntegratorSpec,
+    LightPoint, Medium, MediumBoundary, MediumId, Primitive, Region, Sensor, Span, Vertex,
+};
+
+/// Null boundaries that one flight may cross; more means surfaces that coincide without end.
+const MAX_NULL_CROSSINGS: usize = 4096;
+
+/// A hit that lies within this relative distance of a connection's end belongs to the end's own
+/// primitive (curved ones; a plane is never met again). It shortens the *test* only: transmittance
+/// and time use the full distance.
+const END_TOLERANCE: f64 = 1e-9;
+
+/// One shape: a run of primitives with one material.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// Its id in the scene file.
+    pub name: String,
+    /// Its material.
+    pub bsdf: Bsdf,
+    /// The media on its sides; `None` leaves a crossing ray's medium unchanged.
+    pub boundary: Option<MediumBoundary>,
+    /// Index into [`Scene::emitters`] if it emits.
+    pub emitter: Option<usize>,
+    /// Its primitives.
+    pub primitives: std::ops::Range<u32>,
+}
+
+/// A complete, consistent scene.
+pub struct Scene {
+    /// All primitives.
+    pub primitives: Vec<Primitive>,
+    /// All shapes.
+    pub shapes: Vec<Shape>,
+    /// All media.
+    pub media: Vec<Medium>,
+    /// All emitters.
+    pub emitters: Vec<Emitter>,
+    /// The camera.
+    pub sensor: Sensor,
+    /// The film that the scene asks for.
+    pub film: FilmSpec,
+    /// Depths and method that the scene asks for.
+    pub integrator: IntegratorSpec,
+    /// What fills space beyond all boundaries.
+    pub background: Region,
+    pub(crate) shape_of: Vec<u32>,
+    pub(crate) surfaces: Vec<Option<EmittingSurface>>,
+    pub(crate) emission_choice: Choice,
+    pub(crate) connection_choice: Choice,
+    pub(crate) bvh: Bvh,
+}
+
+impl Scene {
+    /// The shape that a primitive belongs to.
+    #[inline]
+    pub fn shape(&self, primitive: u32) -> &Shape {
+        &self.shapes[self.shape_of[primitive as usize] as usize]
+    }
+
+    /// A medium.
+    #[inline]
+    pub fn medium(&self, id: MediumId) -> &Medium {
+        &self.media[id.0 as usize]
+    }
+
+    /// The box around all surfaces (empty without surfaces).
+    pub fn bounds(&self) -> Aabb {
+        self.primitives.iter().fold(Aabb::EMPTY, |b, p| b.union(p.bounds()))
+    }
+
+    /// The vertex that camera rays start from.
+    pub fn eye(&self) -> Vertex {
+        let Sensor { position, region, .. } = self.sensor;
+        Vertex { position, primitive: None, region }
+    }
+
+    /// The nearest surface within `t_max`: its distance and primitive.
+    #[inline]
+    pub fn nearest(&self, from: &Vertex, direction: DVec3, t_max: f64) -> Option<(f64, u32)> {
+        let mut best = (t_max, u32::MAX);
+        self.bvh.visit(from.position, direction, t_max, |index| {
+            let stands_on = from.primitive == Some(index as u32);
+            let p = &self.primitives[index];
+            let t = p.intersect(from.position, direction, best.0, stands_on)?;
+            best = (t, index as u32);
+            Some(t)
+        });
+        (best.1 != u32::MAX).then_some(best)
+    }
+
+    /// Flies on through null boundaries to the first surface that acts on light.
+    #[inline]
+    pub fn fly(&self, from: &Vertex, direction: DVec3) -> Flight {
+        let mut spans = SmallVec::new();
+        let hit = self.follow(from, direction, f64::INFINITY, None, &mut spans);
+        Flight { origin: from.position, direction, spans, hit }
+    }
+
+    /// The flight to a point at `distance`, if no surface but null boundaries lies in between.
+    /// `end_primitive` is the one that the point lies on.
+    #[inline]
+    pub fn connect(
+        &self,
+        from: &Vertex,
+        direction: DVec3,
+        distance: f64,
+        end_primitive: Option<u32>,
+    ) -> Option<Flight> {
+        let mut spans = SmallVec::new();
+        let hit = self.follow(from, direction, distance, end_primitive, &mut spans);
+        hit.is_none().then_some(Flight { origin: from.position, direction, spans, hit })
+    }
+
+    /// Collects spans up to `length` or to the first non-null hit, which is returned.
+    #[inline]
+    fn follow(
+        &self,
+        from: &Vertex,
+        direction: DVec3,
+        length: f64,
+        end_primitive: Option<u32>,
+        spans: &mut SmallVec<[Span; 4]>,
+    ) -> Option<Hit> {
+        let (mut vertex, mut start) = (*from, 0.0);
+        for _ in 0..MAX_NULL_CROSSINGS {
+            let rest = length - start;
+            let met = self.nearest(&vertex, direction, rest).filter(|&(t, primitive)| {
+                end_primitive != Some(primitive) || t < rest * (1.0 - END_TOLERANCE)
+            });
+            let Some((t, primitive)) = met else {
+                break;
+            };
+            let end = start + t;
+            spans.push(Span { start, end, region: vertex.region });
+            let position = vertex.position + t * direction;
+            let normal = self.primitives[primitive as usize].normal(position);
+            let shape = self.shape(primitive);
+            if shape.bsdf != Bsdf::Null {
+                return Some(Hit { distance: end, primitive, position, normal });
+            }
+            vertex.region = self.region_beyond(shape, direction.dot(normal) > 0.0, vertex.region);
+            (vertex.position, vertex.primitive, start) = (position, Some(primitive), end);
+        }
+        spans.push(Span { start, end: length, region: vertex.region });
+        None
+    }
+
+    /// The region that light enters through a null or dielectric shape: on the side of the normal
+    /// if `to_front`.
+    #[inline]
+    pub fn region_beyond(&self, shape: &Shape, to_front: bool, before: Region) -> Region {
+        let medium = shape.boundary.map_or(before.medium, |b| b.side(to_front));
+        let eta = match shape.bsdf {
+            Bsdf::Dielectric(d) if to_front => d.exterior_eta,
+            Bsdf::Dielectric(d) => d.interior_eta,
+            Bsdf::Null | Bsdf::Opaque { .. } => before.eta,
+        };
+        Region { medium, eta }
+    }
+
+    /// Radiance that the surface at `hit` emits against `direction` (the propagation of the ray
+    /// that met it), if it emits on that side.
+    #[inline]
+    pub fn emitted<const C: usize>(&self, hit: &Hit, direction: DVec3) -> Option<Spectrum<C>> {
+        let emitter = self.shape(hit.primitive).emitter?;
+        match self.emitters[emitter].kind {
+            EmitterKind::Area { radiance, .. } if direction.dot(hit.normal) < 0.0 => {
+                Some(Rgb::channels(radiance))
+            }
+            _ => None,
+        }
+    }
+
+    /// Chooses a point on an emitter, by power and area; `None` without emitters to connect to.
+    #[inline]
+    pub fn sample_light(&self, rng: &mut Stream) -> Option<LightPoint> {
+        let (emitter, probability) = self.connection_choice.pick(rng)?;
+        Some(match self.emitters[emitter].kind {
+            EmitterKind::Point { position, .. } | EmitterKind::Spot { position, .. } => {
+                LightPoint { emitter, position, primitive: None, normal: None, pdf: probability }
+            }
+            EmitterKind::Area { area, .. } => {
+                let (primitive, p) = self.pick_on_surface(emitter, rng);
+                LightPoint {
+                    emitter,
+                    position: p.position,
+                    primitive: Some(primitive),
+                    normal: Some(p.normal),
+                    pdf: probability / area,
+                }
+            }
+            EmitterKind::Laser { .. } => return None,
+        })
+    }
+
+    /// The density (per m²) with which [`Scene::sample_light`] chooses the point that was hit.
+    #[inline]
+    pub fn light_pdf(&self, hit: &Hit) -> f64 {
+        self.shape(hit.primitive).emitter.map_or(0.0, |emitter| match self.emitters[emitter].kind {
+            EmitterKind::Area { area, .. } => self.connection_choice.probability(emitter) / area,
+            _ => 0.0,
+        })
+    }
+
+    /// Light from a chosen point towards `receiver`; `None` where it sends none there.
+    #[inline]
+    pub fn incident<const C: usize>(
+        &self,
+        point: &LightPoint,
+        receiver: DVec3,
+    ) -> Option<Incident<C>> {
+        self.emitters[point.emitter].kind.incident(point, receiver)
+    }
+
+    /// A photon; `None` in a scene without light. Its region is the emitter's.
+    pub fn emit<const C: usize>(&self, rng: &mut Stream) -> Option<Emission<C>> {
+        let (emitter, probability) = self.emission_choice.pick(rng)?;
+        let kind = &self.emitters[emitter].kind;
+        Some(kind.emit(emitter, probability, rng, |rng| self.pick_on_surface(emitter, rng)))
+    }
+
+    /// Total power of all emitters \[W\].
+    pub fn power(&self) -> Rgb {
+        self.emitters.iter().map(|e| e.kind.power()).sum()
+    }
+
+    fn pick_on_surface(
+        &self,
+        emitter: usize,
+        rng: &mut Stream,
+    ) -> (u32, crate::geometry::SurfacePoint) {
+        let surface = self.surfaces[emitter].as_ref().expect("area emitters have a surface");
+        let primitive = surface.pick(rng);
+        let (u1, u2) = (rng.uniform(), rng.uniform());
+        (primitive, self.primitives[primitive as usize].sample(u1, u2))
+    }
+}
+
+/// A discrete distribution over emitters.
+#[derive(Clone, Debug)]
+pub(crate) struct Choice {
+    probabilities: Vec<f64>,
+}
+
+impl Choice {
+    /// Proportional to `weights`; the choice of nothing if all are 0.
+    pub(crate) fn new(weights: &[f64]) -> Self {
+        let total: f64 = weights.iter().sum();
+        let scale = if total > 0.0 { 1.0 / total } else { 0.0 };
+        Self { probabilities: weights.iter().map(|w| w * scale).collect() }
+    }
+
+    fn probability(&self, index: usize) -> f64 {
+        self.probabilities[index]
+    }
+
+    #[inline]
+    fn pick(&self, rng: &mut Stream) -> Option<(usize, f64)> {
+        let last = self.probabilities.iter().rposition(|&p| p > 0.0)?;
+        if self.probabilities.len() == 1 {
+            return Some((0, 1.0));
+        }
+        let mut rest = rng.uniform();
+        for (index, &p) in self.probabilities[..last].iter().enumerate() {
+            if rest < p {
+                return Some((index, p));
+            }
+            rest -= p;
+        }
+        Some((last, self.probabilities[last]))
+    }
+}
