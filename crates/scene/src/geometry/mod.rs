@@ -116,7 +116,7 @@ mod tests {
         for primitive in primitives() {
             for i in 0..100 {
                 let u1 = (f64::from(i) + 0.5) / 100.0;
-                let u2 = (f64::from(i) * 0.618).fract();
+                let u2 = (f64::from(i) * 0.618 + 0.3).fract();
                 let p = primitive.sample(u1, u2);
                 let distance = (p.position - eye).length();
                 let direction = (p.position - eye) / distance;

@@ -1,0 +1,105 @@
+//! Lamps.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::materials::Medium;
+use super::transform::{Transform, Vector};
+use super::values::{Colour, ConeAngle, NonNegative, Positive, grey};
+
+/// A lamp that stands by itself.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(tag = "type", deny_unknown_fields)]
+pub enum Emitter {
+    /// A point that shines in all directions alike.
+    Point(Point),
+    /// A point that shines into a cone.
+    Spot(Spot),
+    /// A round collimated beam (extension).
+    Laser(Laser),
+}
+
+/// A lamp that belongs to a shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(tag = "type", deny_unknown_fields)]
+pub enum ShapeEmitter {
+    /// Diffuse emission from the surface, on the side of the normal.
+    Area(Area),
+}
+
+/// `point`: shines in all directions alike.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Point {
+    /// Where it stands \[m\]; instead of `to_world`.
+    #[serde(default)]
+    pub position: Option<Vector>,
+    /// Steps whose image of the origin is where it stands; instead of `position`.
+    #[serde(default)]
+    pub to_world: Option<Transform>,
+    /// Radiant intensity \[W/sr\], at least 0.
+    #[serde(default = "unit")]
+    pub intensity: Colour<NonNegative>,
+    /// The medium around the lamp; found from the shapes around it unless given.
+    #[serde(default)]
+    pub medium: Option<Medium>,
+}
+
+/// `spot`: shines along local +z into a cone, with a linear falloff at its rim.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Spot {
+    /// Steps that place the lamp: rotations and translations, or a `look_at`.
+    #[serde(default)]
+    pub to_world: Transform,
+    /// Radiant intensity on the axis \[W/sr\], at least 0.
+    #[serde(default = "unit")]
+    pub intensity: Colour<NonNegative>,
+    /// Angle from the axis beyond which it is dark, in degrees.
+    #[serde(default = "twenty_degrees")]
+    pub cutoff_angle: ConeAngle,
+    /// Angle from the axis up to which it is fully bright, in degrees; 3/4 of `cutoff_angle`
+    /// unless given.
+    #[serde(default)]
+    pub beam_width: Option<NonNegative>,
+    /// The medium around the lamp; found from the shapes around it unless given.
+    #[serde(default)]
+    pub medium: Option<Medium>,
+}
+
+/// `laser` (extension): a disc that sends a collimated beam along local +z, uniform over the
+/// disc. Optical path lengths count from the disc.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Laser {
+    /// Steps that place the disc: rotations and translations, or a `look_at`.
+    #[serde(default)]
+    pub to_world: Transform,
+    /// Radius of the beam \[m\], greater than 0.
+    pub radius: Positive,
+    /// Total power \[W\], at least 0.
+    #[serde(default = "unit")]
+    pub power: Colour<NonNegative>,
+    /// The medium around the lamp; found from the shapes around it unless given.
+    #[serde(default)]
+    pub medium: Option<Medium>,
+}
+
+/// `area`: makes a shape shine, on the side of its normal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Area {
+    /// Radiance in all directions \[W m^-2 sr^-1\], at least 0.
+    #[serde(default = "unit")]
+    pub radiance: Colour<NonNegative>,
+}
+
+const fn unit() -> Colour<NonNegative> {
+    grey(1.0)
+}
+
+const fn twenty_degrees() -> ConeAngle {
+    ConeAngle::MITSUBA
+}

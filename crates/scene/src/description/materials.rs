@@ -1,0 +1,186 @@
+//! BSDFs, phase functions and media.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::values::{Colour, Fraction, Ior, MeanCosine, NonNegative, Positive, grey};
+use super::Reference;
+
+/// What a surface does to light.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(tag = "type", deny_unknown_fields)]
+pub enum Bsdf {
+    /// Lambertian reflection, on the side of the normal only.
+    Diffuse(Diffuse),
+    /// A perfect mirror, on the side of the normal only.
+    Conductor(Conductor),
+    /// A smooth interface between two refractive indices.
+    Dielectric(Dielectric),
+    /// No surface at all: the boundary of an index-matched medium.
+    Null(Null),
+    /// Gives each side of an opaque surface its own BSDF.
+    Twosided(Box<Twosided>),
+    /// A BSDF that stands elsewhere in the file.
+    Ref(Reference),
+}
+
+/// `diffuse`: Lambertian reflection on the side of the normal; the other side is black.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Diffuse {
+    /// Part of the light that is reflected, 0 to 1.
+    #[serde(default = "half")]
+    pub reflectance: Colour<Fraction>,
+}
+
+impl Default for Diffuse {
+    fn default() -> Self {
+        Self { reflectance: half() }
+    }
+}
+
+/// `conductor`: a mirror on the side of the normal; the other side is black.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Conductor {
+    /// The metal. Only `none`, a perfect mirror, is supported; it must be written, because
+    /// Mitsuba's default is a real metal.
+    pub material: Metal,
+    /// Part of the light that is reflected, 0 to 1.
+    #[serde(default = "white")]
+    pub specular_reflectance: Colour<Fraction>,
+}
+
+/// The metals that `conductor` knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Metal {
+    /// No metal: reflects everything at every angle.
+    None,
+}
+
+/// `dielectric`: a smooth interface with Fresnel reflection and refraction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Dielectric {
+    /// Refractive index on the side opposite to the normal.
+    #[serde(default = "bk7")]
+    pub int_ior: Ior,
+    /// Refractive index on the side of the normal.
+    #[serde(default = "air")]
+    pub ext_ior: Ior,
+    /// Factor on reflected light, 0 to 1; 1 is physical.
+    #[serde(default = "white")]
+    pub specular_reflectance: Colour<Fraction>,
+    /// Factor on transmitted light, 0 to 1; 1 is physical.
+    #[serde(default = "white")]
+    pub specular_transmittance: Colour<Fraction>,
+}
+
+/// `null`: light passes unchanged.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Null {}
+
+/// `twosided`: opaque BSDFs on both sides of a surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Twosided {
+    /// The BSDF of the front, and of the back too unless `back` is given: `diffuse` or
+    /// `conductor`.
+    pub bsdf: Bsdf,
+    /// The BSDF of the back (the side opposite to the normal).
+    #[serde(default)]
+    pub back: Option<Bsdf>,
+}
+
+/// A participating medium.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(tag = "type", deny_unknown_fields)]
+pub enum Medium {
+    /// A medium that is the same everywhere.
+    Homogeneous(Box<Homogeneous>),
+    /// A medium that stands elsewhere in the file.
+    Ref(Reference),
+}
+
+/// `homogeneous`: coefficients in 1/m, given as `sigma_t` and `albedo` (Mitsuba's way) or as
+/// `sigma_s` and `sigma_a` (extension).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Homogeneous {
+    /// Extinction coefficient \[1/m\], at least 0; default 1.
+    #[serde(default)]
+    pub sigma_t: Option<Colour<NonNegative>>,
+    /// Part of the extinction that is scattering, 0 to 1; default 0.75.
+    #[serde(default)]
+    pub albedo: Option<Colour<Fraction>>,
+    /// Scattering coefficient \[1/m\], at least 0; with `sigma_a`.
+    #[serde(default)]
+    pub sigma_s: Option<Colour<NonNegative>>,
+    /// Absorption coefficient \[1/m\], at least 0; with `sigma_s`.
+    #[serde(default)]
+    pub sigma_a: Option<Colour<NonNegative>>,
+    /// Factor on all coefficients, at least 0.
+    #[serde(default = "unscaled")]
+    pub scale: NonNegative,
+    /// Phase function; isotropic unless given.
+    #[serde(default)]
+    pub phase: Option<Phase>,
+    /// Refractive index inside the medium, greater than 0 (extension); default 1.
+    #[serde(default)]
+    pub eta: Option<Positive>,
+}
+
+/// The distribution of scattered directions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(tag = "type", deny_unknown_fields)]
+pub enum Phase {
+    /// All directions alike.
+    Isotropic(Isotropic),
+    /// Henyey-Greenstein.
+    Hg(Hg),
+    /// A phase function that stands elsewhere in the file.
+    Ref(Reference),
+}
+
+/// `isotropic`: all directions alike.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Isotropic {}
+
+/// `hg`: the Henyey-Greenstein phase function.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Hg {
+    /// Mean cosine of the scattering angle, between -1 and 1 (exclusive); positive is forward.
+    #[serde(default = "forward")]
+    pub g: MeanCosine,
+}
+
+const fn half() -> Colour<Fraction> {
+    grey(0.5)
+}
+
+const fn white() -> Colour<Fraction> {
+    grey(1.0)
+}
+
+const fn bk7() -> Ior {
+    Ior::BK7
+}
+
+const fn air() -> Ior {
+    Ior::AIR
+}
+
+const fn unscaled() -> NonNegative {
+    NonNegative::ONE
+}
+
+const fn forward() -> MeanCosine {
+    MeanCosine::MITSUBA
+}
