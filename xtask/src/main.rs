@@ -1,2 +1,63 @@
-//! Entry point.
-fn main() {}
+//! Project tasks: parse, call, print. `cargo xtask` alone lists them.
+
+mod gate;
+mod schema;
+mod tables;
+mod tidy;
+mod validate;
+mod workspace;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Tasks of the transient photon beams workspace.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Compares the renderers with the analytic reference and with each other (the main job).
+    Validate(validate::ValidateArgs),
+    /// Everything that must pass: fmt, clippy, docs, house rules, all tests.
+    Test,
+    /// Evaluates every row of every JSON table of published and computed values.
+    Tables {
+        /// Folder of tables [default: validation/tables]
+        dir: Option<PathBuf>,
+    },
+    /// Renders the long reference cube of an equal-time comparison.
+    ReferenceRender(validate::ReferenceRenderArgs),
+    /// Checks scene.schema.json against the code, or writes it.
+    Schema {
+        /// Write the file instead of checking it
+        #[arg(long)]
+        write: bool,
+    },
+    /// Checks the rules of the house: floors, file lengths, one glam.
+    Tidy,
+}
+
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().task {
+        Task::Validate(args) => validate::run(&args),
+        Task::Test => gate::run(),
+        Task::Tables { dir } => tables::run(dir),
+        Task::ReferenceRender(args) => validate::reference_render(&args),
+        Task::Schema { write } => schema::run(write),
+        Task::Tidy => tidy::run(),
+    };
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            workspace::complain(&error.to_string());
+            ExitCode::from(2)
+        }
+    }
+}
