@@ -5,19 +5,29 @@
 //! [`TransientFilm`] averages passes. The invariant everywhere, to rounding:
 //! sum over bins + before + after = steady image.
 
+mod arrays;
 mod arrival;
+mod atomic;
 mod error;
 mod film;
 mod layout;
 mod ledger;
+mod npz;
+mod picture;
 mod profile;
+mod pulse;
 mod quadrature;
 mod stats;
+mod steady_exr;
 mod strip;
 
+pub use arrays::{Arrays, Quantity};
 pub use arrival::{Arrival, TemporalProfile};
+pub use atomic::atomic_write;
 pub use error::FilmError;
 pub use film::{FilmOptions, OutputChannels, TransientFilm};
 pub use layout::{Layout, TimeAxis};
 pub use ledger::Ledger;
+pub use picture::{ArrivalColours, ArrivalTime, PictureOptions};
+pub use pulse::{Pulse, PulseReport};
 pub use strip::Strip;

@@ -1,0 +1,162 @@
+//! The arrays that leave the film.
+//!
+//! Cells are f32, (row, column, bin, channel) with row 0 at the top; images beside them are f64
+//! (row, column, channel), so that bins + before + after = steady holds to the rounding of f32.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use tpb_optics::opl::seconds_from_opl;
+use tpb_optics::spectrum::LUMINANCE;
+
+use crate::film::{Statistics, TransientFilm};
+use crate::stats::variance_factor;
+
+/// What the cells of [`Arrays::transient`] hold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Time-integrated radiance within each bin \[W m^-2 sr^-1\] (\[J m^-2 sr^-1\] for a pulse
+    /// whose energies are in J).
+    #[default]
+    BinEnergy,
+    /// Radiance \[W m^-2 sr^-1\] at the upper edge of each bin, of emission that was switched on
+    /// at 0; `before` is the radiance at the first edge, `before + after` is no longer complete.
+    RadianceAtUpperEdges,
+}
+
+/// A developed film.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arrays {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Bins per pixel; 0 for a steady film, whose only array is `steady`.
+    pub bins: usize,
+    /// Channels.
+    pub channels: usize,
+    /// What `transient` holds.
+    pub quantity: Quantity,
+    /// The edges of the bins, `bins + 1` \[m\] (none for a steady film).
+    pub opl_edges: Vec<f64>,
+    /// (height, width, bins, channels).
+    pub transient: Vec<f32>,
+    /// Variance of the mean over passes, like `transient`, in its unit squared; asked for, and
+    /// after at least two passes.
+    pub variance: Option<Vec<f32>>,
+    /// What arrived before the first bin, (height, width, channels); empty for a steady film.
+    pub before: Vec<f64>,
+    /// What arrived after the last bin, likewise.
+    pub after: Vec<f64>,
+    /// The steady image \[W m^-2 sr^-1\], (height, width, channels).
+    pub steady: Vec<f64>,
+}
+
+impl Arrays {
+    /// The edges of the bins \[s\].
+    pub fn time_edges(&self) -> Vec<f64> {
+        self.opl_edges.iter().map(|&opl| seconds_from_opl(opl)).collect()
+    }
+
+    /// Number of pixels.
+    pub fn pixels(&self) -> usize {
+        self.width * self.height
+    }
+
+    /// The cells of one pixel, (bins, channels).
+    pub fn pixel(&self, pixel: usize) -> &[f32] {
+        let size = self.bins * self.channels;
+        &self.transient[pixel * size..(pixel + 1) * size]
+    }
+
+    /// Keeps only some bins, at least one; what the others hold goes to before and after. Used to
+    /// drop the guard bins around a pulse. Does nothing unless cells hold bin energies and the
+    /// range is within the bins and not empty.
+    pub fn crop_bins(&mut self, keep: Range<usize>) {
+        let whole = self.quantity == Quantity::BinEnergy;
+        if !whole || keep.is_empty() || keep.end > self.bins {
+            return;
+        }
+        let (bins, channels) = (self.bins, self.channels);
+        let cut = |cells: &[f32]| -> Vec<f32> {
+            let pixels = cells.chunks_exact(bins * channels);
+            let kept = pixels.flat_map(|p| &p[keep.start * channels..keep.end * channels]);
+            kept.copied().collect()
+        };
+        for (pixel, cells) in self.transient.chunks_exact(bins * channels).enumerate() {
+            for (bin, cell) in cells.chunks_exact(channels).enumerate() {
+                let outside = match bin {
+                    b if b < keep.start => &mut self.before,
+                    b if b >= keep.end => &mut self.after,
+                    _ => continue,
+                };
+                for (channel, &value) in cell.iter().enumerate() {
+                    outside[pixel * channels + channel] += f64::from(value);
+                }
+            }
+        }
+        self.transient = cut(&self.transient);
+        self.variance = self.variance.as_deref().map(cut);
+        self.opl_edges = self.opl_edges[keep.start..=keep.end].to_vec();
+        self.bins = keep.len();
+    }
+}
+
+/// Luminance of a cell with one or three channels.
+pub(crate) fn luminance(cell: &[f32]) -> f64 {
+    match *cell {
+        [r, g, b] => {
+            [r, g, b].iter().zip(LUMINANCE).map(|(&value, weight)| f64::from(value) * weight).sum()
+        }
+        _ => f64::from(cell[0]),
+    }
+}
+
+impl<const C: usize> TransientFilm<C> {
+    /// The arrays of the passes so far.
+    pub fn develop(&self) -> Arrays {
+        let layout = self.layout();
+        let Statistics { kept, mean, squares, steady_mean } = self.statistics();
+        let channels = self.output_channels();
+        let cells = if mean.is_empty() { 0 } else { layout.bins() + 2 };
+        let bins = layout.bins();
+        // Output channel → kept channel: itself, or the only one.
+        let source = |channel: usize| channel.min(kept - 1);
+
+        let cube = |statistics: &[f64], factor: f64| -> Vec<f32> {
+            let mut cube = vec![0.0; layout.pixels() * bins * channels];
+            if bins > 0 {
+                let pixels = cube.par_chunks_exact_mut(bins * channels);
+                pixels.zip(statistics.par_chunks_exact(cells * kept)).for_each(|(out, cells)| {
+                    let cells = cells[kept..].chunks_exact(kept);
+                    for (out, cell) in out.chunks_exact_mut(channels).zip(cells) {
+                        for (channel, out) in out.iter_mut().enumerate() {
+                            *out = (cell[source(channel)] * factor) as f32;
+                        }
+                    }
+                });
+            }
+            cube
+        };
+        let image = |statistics: &[f64], cells: usize, cell: usize| -> Vec<f64> {
+            let pixels = statistics.chunks_exact((cells * kept).max(1));
+            pixels.flat_map(|p| (0..channels).map(move |c| p[cell * kept + source(c)])).collect()
+        };
+        let factor = variance_factor(self.passes()).filter(|_| self.options().variance);
+        Arrays {
+            width: layout.width,
+            height: layout.height,
+            bins,
+            channels,
+            quantity: Quantity::BinEnergy,
+            opl_edges: layout.time.map_or_else(Vec::new, |time| time.edges()),
+            transient: cube(mean, 1.0),
+            variance: factor.filter(|_| bins > 0).map(|factor| cube(squares, factor)),
+            before: image(mean, cells, 0),
+            after: image(mean, cells, cells.saturating_sub(1)),
+            steady: image(steady_mean, 1, 0),
+        }
+    }
+}

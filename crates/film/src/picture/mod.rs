@@ -1,0 +1,103 @@
+//! Pictures of the arrays, for people: frames, animation, time of arrival, streak.
+//!
+//! * [`tone`]: exposure and the sRGB curve.
+//! * [`frames`]: one PNG per frame, and all of them as an APNG, which browsers play.
+//! * [`arrival_time`]: hue tells when light arrives, brightness how much.
+//! * [`streak`]: one row of the image against time.
+
+mod arrival_time;
+mod frames;
+mod streak;
+mod tone;
+
+use std::io::{self, BufWriter};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+pub use arrival_time::{ArrivalColours, ArrivalTime};
+
+use crate::{Arrays, FilmError, atomic_write};
+
+/// How pictures are made.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct PictureOptions {
+    /// The part of lit cells (or pixels) that is darker than display white.
+    pub white_percentile: f64,
+    /// Brightness on top of that; 2 is one stop up.
+    pub exposure: f64,
+    /// Bins are averaged in groups so that there are at most this many frames.
+    pub max_frames: usize,
+    /// Speed of the animation.
+    pub frames_per_second: u16,
+    /// The image row of the streak picture; the middle one by default.
+    pub streak_row: Option<usize>,
+    /// Which time the hue shows.
+    pub arrival: ArrivalTime,
+}
+
+impl Default for PictureOptions {
+    fn default() -> Self {
+        Self {
+            white_percentile: 0.99,
+            exposure: 1.0,
+            max_frames: 300,
+            frames_per_second: 20,
+            streak_row: None,
+            arrival: ArrivalTime::Mean,
+        }
+    }
+}
+
+/// An 8-bit image with one or three channels, sRGB-encoded.
+struct Image {
+    width: usize,
+    height: usize,
+    channels: usize,
+    samples: Vec<u8>,
+}
+
+impl Image {
+    fn color(&self) -> png::ColorType {
+        if self.channels == 3 { png::ColorType::Rgb } else { png::ColorType::Grayscale }
+    }
+
+    /// An encoder for images of this size.
+    fn encoder<'w, W: io::Write>(&self, file: W) -> io::Result<png::Encoder<'w, W>> {
+        let side = |n: usize| u32::try_from(n).map_err(io::Error::other);
+        let mut encoder = png::Encoder::new(file, side(self.width)?, side(self.height)?);
+        encoder.set_color(self.color());
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        Ok(encoder)
+    }
+
+    fn write(&self, path: &Path, texts: &[(&str, String)]) -> Result<(), FilmError> {
+        atomic_write(path, |file: &mut BufWriter<_>| {
+            let mut encoder = self.encoder(file)?;
+            for (keyword, text) in texts {
+                encoder.add_text_chunk((*keyword).to_owned(), text.clone())?;
+            }
+            let mut writer = encoder.write_header()?;
+            writer.write_image_data(&self.samples)?;
+            writer.finish()?;
+            Ok(())
+        })
+    }
+}
+
+impl Arrays {
+    /// Channels of a picture: colour or grey.
+    fn picture_channels(&self) -> usize {
+        if self.channels == 3 { 3 } else { 1 }
+    }
+
+    /// That there are bins to show.
+    fn need_bins(&self) -> Result<(), FilmError> {
+        if self.bins > 0 {
+            return Ok(());
+        }
+        Err(FilmError::Unsuitable("pictures of time need a time axis; this film is steady"))
+    }
+}
