@@ -1,0 +1,19 @@
+//! Every solution that has a table must meet it.
+
+use std::path::Path;
+use tpb_reference::registry::SOLUTIONS;
+use tpb_reference::tables::{Verdict, evaluate_directory};
+
+const TABLES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../validation/tables");
+
+#[test]
+fn every_known_table_passes() {
+    let reports = evaluate_directory(Path::new(TABLES)).unwrap();
+    let failed: Vec<_> =
+        reports.iter().filter(|report| report.verdict() == Verdict::Failed).collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+    let passed = reports.iter().filter(|report| report.verdict() == Verdict::Passed).count();
+    // The bins of the expected blur have no table; they are compared with other solutions.
+    let without_table = ["expected_blur_1d_bins", "expected_blur_2d_bins"];
+    assert_eq!(passed, SOLUTIONS.len() - without_table.len());
+}
