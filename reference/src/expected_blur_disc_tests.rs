@@ -124,6 +124,22 @@ fn the_expectation_is_the_average_over_beams_in_all_directions() {
 }
 
 #[test]
+fn a_distant_source_close_to_the_ray_keeps_its_digits() {
+    // q starts at (b² − R²) / 2z, which x − z no longer resolves at z = 1e9. Values of 40-digit
+    // quadrature.
+    let unit = Blur2d { energy: 1.0, sigma_s: 1.0, speed: 1.0, ..SAMPLE };
+    for (source_z, radius, end, expected) in [
+        (1e3, 0.5, 1001.0, 0.003_941_391_155_805_560_4),
+        (1e9, 0.5, 1e9 + 1.0, 0.003_945_409_249_534_386),
+        (1e3, 0.999, 1001.0, 0.005_768_925_147_230_157),
+        (-1e3, 0.999, 1001.0, 1.163_355_728_496_988_4e-9),
+    ] {
+        let of = Blur2d { source_z, radius, sigma_t: 1.0 / f64::abs(source_z), ..unit };
+        close(in_bin(&of, 0.0, end), expected, 1e-9);
+    }
+}
+
+#[test]
 fn a_disc_that_reaches_the_source_is_outside_the_domain() {
     for radius in [1.0, 2.0, 0.0, f64::NAN] {
         assert!(expected_blur_2d(&Blur2d { radius, ..SAMPLE }).is_err());
