@@ -134,7 +134,7 @@ fn a_distant_source_close_to_the_ray_keeps_its_digits() {
         (1e3, 0.999, 1001.0, 0.005_768_925_147_230_157),
         (-1e3, 0.999, 1001.0, 1.163_355_728_496_988_4e-9),
     ] {
-        let of = Blur2d { source_z, radius, sigma_t: 1.0 / f64::abs(source_z), ..unit };
+        let of = Blur2d { sigma_t: 1.0 / f64::abs(source_z), source_z, radius, ..unit };
         close(in_bin(&of, 0.0, end), expected, 1e-9);
     }
 }
