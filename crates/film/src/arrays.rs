@@ -3,6 +3,7 @@
 //! Cells are f32, (row, column, bin, channel) with row 0 at the top; images beside them are f64
 //! (row, column, channel), so that bins + before + after = steady holds to the rounding of f32.
 
+use std::fmt;
 use std::ops::Range;
 
 use rayon::prelude::*;
@@ -27,7 +28,7 @@ pub enum Quantity {
 }
 
 /// A developed film.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Arrays {
     /// Pixels in a row.
     pub width: usize,
@@ -101,6 +102,14 @@ impl Arrays {
         self.variance = self.variance.as_deref().map(cut);
         self.opl_edges = self.opl_edges[keep.start..=keep.end].to_vec();
         self.bins = keep.len();
+    }
+}
+
+/// Sizes only: a cube is no reading.
+impl fmt::Debug for Arrays {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { width, height, bins, channels, quantity, .. } = self;
+        write!(f, "Arrays {width} x {height}, {bins} bins, {channels} channels, {quantity:?}")
     }
 }
 

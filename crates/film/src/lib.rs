@@ -20,6 +20,8 @@ mod quadrature;
 mod stats;
 mod steady_exr;
 mod strip;
+#[cfg(test)]
+mod testing;
 
 pub use arrays::{Arrays, Quantity};
 pub use arrival::{Arrival, TemporalProfile};

@@ -16,9 +16,9 @@ use std::fs::File;
 use std::io::{self, BufReader, BufWriter};
 use std::path::Path;
 
-use npyz::npz::{NpzArchive, NpzWriter};
-use npyz::zip::{CompressionMethod, write::FileOptions};
-use npyz::{AutoSerialize, Deserialize, WriterBuilder};
+use npyz::npz::{NpzArchive, NpzWriter, file_name_from_array_name};
+use npyz::zip::{CompressionMethod, result::ZipError, write::FileOptions};
+use npyz::{AutoSerialize, Deserialize, NpyFile, NpyHeader, Order, WriterBuilder};
 
 use crate::arrays::{Arrays, Quantity};
 use crate::{FilmError, atomic_write};
@@ -140,18 +140,31 @@ impl Reader<'_> {
     ) -> Result<Option<Array<T>>, FilmError> {
         let path = self.path;
         let broken = |e: io::Error| FilmError::format(path, format!("`{name}`: {e}"));
-        let Some(member) = self.npz.by_name(name).map_err(broken)? else {
-            return Ok(None);
+        let mut member = match self.npz.zip_archive().by_name(&file_name_from_array_name(name)) {
+            Ok(member) => member,
+            Err(ZipError::FileNotFound) => return Ok(None),
+            Err(error) => return Err(broken(error.into())),
         };
-        let shape: Vec<usize> = member.shape().iter().map(|&n| n as usize).collect();
-        if member.order() != npyz::Order::C && shape.len() > 1 {
+        let header = NpyHeader::from_reader(&mut member).map_err(broken)?;
+        let shape: Vec<usize> = header.shape().iter().map(|&n| n as usize).collect();
+        if header.order() != Order::C && shape.len() > 1 {
             return Err(FilmError::format(path, format!("`{name}` is not in C order")));
         }
         if expected.is_some_and(|expected| expected != shape) {
             let reason = format!("`{name}` has shape {shape:?} instead of {expected:?}");
             return Err(FilmError::format(path, reason));
         }
-        Ok(Some((shape, member.into_vec().map_err(broken)?)))
+        let count = shape.iter().try_fold(size_of::<T>(), |bytes, &n| bytes.checked_mul(n));
+        if count.is_none_or(|bytes| bytes as u64 > member.size()) {
+            let reason = format!("`{name}` is shorter than its shape {shape:?}");
+            return Err(FilmError::format(path, reason));
+        }
+        let values = NpyFile::with_header(header, &mut member).into_vec().map_err(broken)?;
+        // Only at the end of a member does the archive compare its checksum.
+        if io::copy(&mut member, &mut io::sink()).map_err(broken)? > 0 {
+            return Err(FilmError::format(path, format!("`{name}` is longer than its shape")));
+        }
+        Ok(Some((shape, values)))
     }
 
     fn required<T: Deserialize>(

@@ -6,8 +6,9 @@
 //! `S(x1) · (−expm1(−d (x2 − x1)))`, where `S(x) = exp(−d x)/(−expm1(−d))`: nothing cancels,
 //! however small or large `d` and the interval are. A negative depth is a positive one seen from
 //! the end, with `x = (e − t)/(e − s)` measured from there. Along the cells
-//! `S(x2) = S(x1) + S(x1)·expm1(−d (x2 − x1))`: one `expm1` per cell, and the parts telescope, so
-//! that they add up to the whole to rounding. The tail is the same with `d x = rate (t − s)` and
+//! `S(x2) = S(x1) + S(x1)·expm1(−d (x2 − x1))` (or a product with `exp`, where that sum would
+//! cancel): mostly one `expm1` per cell, and the parts telescope, so that they add up to the whole
+//! to rounding. The tail is the same with `d x = rate (t − s)` and
 //! total 1; what is left after the last edge goes to the cell after the window.
 //!
 //! General densities: `quadrature`, then scaled to unit area.
@@ -151,6 +152,15 @@ fn uniform<const C: usize>(
     }
 }
 
+/// What is absorbed over an optical depth; the rest survives.
+#[inline]
+fn absorb(survival: &mut f64, depth: f64) -> f64 {
+    let absorbed = -*survival * (-depth).exp_m1();
+    // The difference is exact enough while most survives, and saves an exponential.
+    *survival = if depth < 0.6 { *survival - absorbed } else { *survival * (-depth).exp() };
+    absorbed
+}
+
 /// One channel of an exponential.
 fn exponential<const C: usize>(
     span: Span,
@@ -174,9 +184,8 @@ fn exponential<const C: usize>(
     }
     let mut survival = energy / whole;
     let step = |(cell, sum): (usize, &mut Spectrum<C>)| {
-        let change = survival * (-steepness * (span.inside(cell, clock) / span.length)).exp_m1();
-        sum[channel] -= change;
-        survival += change;
+        let part = span.inside(cell, clock) / span.length;
+        sum[channel] += absorb(&mut survival, steepness * part);
     };
     if depth > 0.0 {
         sums.for_each(step);
@@ -199,9 +208,7 @@ fn tail<const C: usize>(
     let mut survival = energy;
     for (cell, sum) in inner.iter_mut().enumerate().skip(first) {
         let inside = clock.upper(cell) - clock.lower(cell).max(start);
-        let change = survival * (-rate * inside).exp_m1();
-        sum[channel] -= change;
-        survival += change;
+        sum[channel] += absorb(&mut survival, rate * inside);
         if survival == 0.0 {
             return;
         }
@@ -256,3 +263,6 @@ fn general<const C: usize>(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

@@ -267,3 +267,6 @@ impl Arrays {
         });
     }
 }
+
+#[cfg(test)]
+mod tests;

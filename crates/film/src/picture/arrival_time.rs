@@ -88,12 +88,7 @@ impl Arrays {
         if self.quantity != Quantity::BinEnergy {
             return Err(FilmError::Unsuitable("continuous emission has no time of arrival"));
         }
-        let steady = |pixel: usize| {
-            let cell = &self.steady[pixel * self.channels..(pixel + 1) * self.channels];
-            let mut values = [0.0_f32; 3];
-            values.iter_mut().zip(cell).for_each(|(value, &s)| *value = s as f32);
-            luminance(&values[..self.channels.min(3)])
-        };
+        let steady = |pixel: usize| self.steady_luminance(pixel);
         let pixels = 0..self.pixels();
         let times: Vec<Option<f64>> =
             pixels.clone().map(|pixel| self.arrival(pixel, options.arrival)).collect();

@@ -1,12 +1,14 @@
-//! Pictures of the arrays, for people: frames, animation, time of arrival, streak.
+//! Pictures of the arrays, for people: frames, animation, time of arrival, streak, steady image.
 //!
 //! * [`tone`]: exposure and the sRGB curve.
 //! * [`frames`]: one PNG per frame, and all of them as an APNG, which browsers play.
 //! * [`arrival_time`]: hue tells when light arrives, brightness how much.
+//! * [`steady`]: the steady image.
 //! * [`streak`]: one row of the image against time.
 
 mod arrival_time;
 mod frames;
+mod steady;
 mod streak;
 mod tone;
 
@@ -14,6 +16,7 @@ use std::io::{self, BufWriter};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use tpb_optics::Spectrum;
 
 pub use arrival_time::{ArrivalColours, ArrivalTime};
 
@@ -91,6 +94,14 @@ impl Arrays {
     /// Channels of a picture: colour or grey.
     fn picture_channels(&self) -> usize {
         if self.channels == 3 { 3 } else { 1 }
+    }
+
+    /// Luminance of a pixel of the steady image.
+    fn steady_luminance(&self, pixel: usize) -> f64 {
+        match self.steady[pixel * self.channels..(pixel + 1) * self.channels] {
+            [r, g, b] => Spectrum([r, g, b]).luminance(),
+            ref cell => cell[0],
+        }
     }
 
     /// That there are bins to show.
