@@ -1,0 +1,174 @@
+//! Connections to light, and the weights of the strategies that find it.
+//!
+//! All weights are balance heuristics. Divided by p_exp(t) p_L(y), with h = p_dir/p_L the ratio of
+//! the densities per steradian of meeting the light by chance and of choosing it, and
+//! e = p_equi(t|y)/p_exp(t) (0 away from flights that are seen from the eye), they are
+//!
+//! ```text
+//! next event 1/(1 + e + h)      equiangular e/(1 + e + h)      hit h/(1 + e + h)
+//! ```
+//!
+//! Scattering is sampled in proportion to itself (phase function, or cosine): one function is both
+//! the value of the scattering and its density p_dir.
+
+use glam::DVec3;
+use tpb_optics::Spectrum;
+use tpb_optics::medium::transmittance;
+use tpb_optics::warp::Equiangular;
+use tpb_scene::{Flight, Hit, LightPoint, Vertex};
+
+use crate::free_flight::FreeFlight;
+use crate::walk::{Found, Walk};
+
+/// Which strategies find emitters that a path could connect to. All of them, but in tests.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Strategies {
+    /// Connect vertices to points on lights.
+    pub(crate) next_event: bool,
+    /// Count emitters that a scattered direction meets.
+    pub(crate) hits: bool,
+    /// Draw distances towards lights, on flights seen from the eye.
+    pub(crate) equiangular: bool,
+}
+
+/// A distance on a flight seen from the eye at which the path scattered, for weighing what it
+/// meets next against equiangular sampling.
+#[derive(Clone, Copy)]
+pub(crate) struct SeenFrom {
+    origin: DVec3,
+    direction: DVec3,
+    extent: (f64, f64),
+    distance: f64,
+    density: f64,
+}
+
+impl SeenFrom {
+    /// The scattering at `distance`, chosen by `free`.
+    #[inline]
+    pub(crate) fn new<const C: usize>(
+        flight: &Flight,
+        free: &FreeFlight<'_, C>,
+        distance: f64,
+    ) -> Option<Self> {
+        Some(Self {
+            origin: flight.origin,
+            direction: flight.direction,
+            extent: free.extent()?,
+            distance,
+            density: free.density(distance),
+        })
+    }
+
+    /// e: what equiangular sampling towards `light` would have had for this distance.
+    #[inline]
+    fn equiangular_ratio(&self, light: DVec3) -> f64 {
+        let (start, end) = self.extent;
+        let towards = Equiangular::new(self.origin, self.direction, start, end, light);
+        towards.pdf(self.distance) / self.density
+    }
+}
+
+impl<const C: usize> Walk<'_, '_, C> {
+    /// Adds the emission at the end of a flight, whether or not the path gets there.
+    #[inline]
+    pub(crate) fn see_emission(&mut self, flight: &Flight, free: &FreeFlight<'_, C>) {
+        let Some(hit) = &flight.hit else { return };
+        if !self.tracer.integrator.counts(self.path.depth) {
+            return;
+        }
+        let Some(radiance) = self.tracer.scene.emitted::<C>(hit, flight.direction) else { return };
+        let weight = self.hit_weight(flight, hit);
+        let throughput = self.path.radiance_throughput() * free.transmittance();
+        let opl = self.path.opl + flight.opl(hit.distance);
+        self.deposit(opl, throughput * radiance * weight);
+    }
+
+    /// Weight of an emitter that the path met.
+    #[inline]
+    fn hit_weight(&self, flight: &Flight, hit: &Hit) -> f64 {
+        let Strategies { next_event, hits, .. } = self.tracer.strategies;
+        let Found::ByScattering { density, seen } = self.path.found else { return 1.0 };
+        if !(next_event && hits) {
+            return if hits { 1.0 } else { 0.0 };
+        }
+        let cos = flight.direction.dot(hit.normal).abs();
+        let chosen = self.tracer.scene.light_pdf(hit) * hit.distance * hit.distance / cos;
+        let e = seen.map_or(0.0, |seen| seen.equiangular_ratio(hit.position));
+        density / (density + chosen * (1.0 + e))
+    }
+
+    /// Next-event estimation at a vertex with OPL `opl` from the eye. `scattering` is value and
+    /// density of the scattering into a direction.
+    #[inline]
+    pub(crate) fn next_event(
+        &mut self,
+        vertex: &Vertex,
+        opl: f64,
+        seen: Option<&SeenFrom>,
+        scattering: impl Fn(DVec3) -> f64,
+    ) {
+        if !self.tracer.strategies.next_event || !self.tracer.integrator.counts(self.path.depth + 1)
+        {
+            return;
+        }
+        let Some(light) = self.tracer.scene.sample_light(self.rng) else { return };
+        let throughput = self.path.radiance_throughput();
+        self.connect(&light, vertex, opl, throughput, scattering, |h| {
+            let e = seen.map_or(0.0, |seen| seen.equiangular_ratio(light.position));
+            1.0 / (1.0 + e + h)
+        });
+    }
+
+    /// On a flight seen from the eye: a light point first, then the distance towards it.
+    pub(crate) fn equiangular(&mut self, flight: &Flight, free: &FreeFlight<'_, C>) {
+        let Some((start, end)) = free.extent() else { return };
+        let Some(light) = self.tracer.scene.sample_light(self.rng) else { return };
+        let towards = Equiangular::new(flight.origin, flight.direction, start, end, light.position);
+        if !towards.is_proper() {
+            return;
+        }
+        let t = towards.sample(self.rng.uniform());
+        // Vacuum between media, and media that only absorb, scatter nothing.
+        let Some(part) = free.scattering_at(t) else { return };
+        let density = towards.pdf(t);
+        let e = density / free.density(t);
+        let throughput = self.path.radiance_throughput()
+            * flight.transmittance(self.tracer.scene, t)
+            * part.coefficients.sigma_s
+            / density;
+        let vertex = Vertex { position: flight.at(t), primitive: None, region: part.region };
+        let phase = part.medium.phase;
+        let scattering = |direction| phase.value(flight.direction.dot(direction));
+        // e/(1 + e + h), with e infinite where the free flight's density underflows.
+        let opl = self.path.opl + flight.opl(t);
+        self.connect(&light, &vertex, opl, throughput, scattering, |h| 1.0 / (1.0 + (1.0 + h) / e));
+    }
+
+    /// Connects `vertex` to `light`; `weight` makes the strategy's weight from h.
+    #[inline]
+    fn connect(
+        &mut self,
+        light: &LightPoint,
+        vertex: &Vertex,
+        opl: f64,
+        throughput: Spectrum<C>,
+        scattering: impl Fn(DVec3) -> f64,
+        weight: impl Fn(f64) -> f64,
+    ) {
+        let scene = self.tracer.scene;
+        let Some(incident) = scene.incident::<C>(light, vertex.position) else { return };
+        let value = scattering(incident.direction);
+        let throughput = throughput * incident.flux * (value / light.pdf);
+        if throughput.is_zero() {
+            return;
+        }
+        let (direction, distance) = (incident.direction, incident.distance);
+        let Some(flight) = scene.connect(vertex, direction, distance, light.primitive) else {
+            return;
+        };
+        let h = if self.tracer.strategies.hits { value / incident.pdf_solid_angle } else { 0.0 };
+        let depth = flight.depth::<C>(scene, distance);
+        let energy = throughput * transmittance(depth) * weight(h);
+        self.deposit(opl + flight.opl(distance), energy);
+    }
+}

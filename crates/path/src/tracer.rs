@@ -1,0 +1,84 @@
+//! The path tracer as a rendering method: passes, pixels, samples.
+
+use std::num::NonZeroU32;
+
+use tpb_film::{Ledger, Strip, TransientFilm};
+use tpb_optics::Stream;
+use tpb_render::{Counts, Method, PassId, PassReport};
+use tpb_scene::{IntegratorSpec, Media, Plan, Scene, Transport};
+
+use crate::PathOptions;
+use crate::light::Strategies;
+use crate::options::grid;
+use crate::walk::Walk;
+
+/// The transient volumetric path tracer on `C` transported channels.
+pub struct PathTracer<'a, const C: usize> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) integrator: IntegratorSpec,
+    pub(crate) strategies: Strategies,
+    samples: NonZeroU32,
+    /// Of one path in its pixel: 1/samples.
+    pub(crate) share: f64,
+}
+
+impl<'a, const C: usize> PathTracer<'a, C> {
+    /// For a scene and the plan that was made with these depths.
+    ///
+    /// # Panics
+    /// If `C` is neither 1 nor 3, or 1 for a plan that needs three channels.
+    pub fn new(
+        scene: &'a Scene,
+        plan: &Plan,
+        integrator: IntegratorSpec,
+        options: &PathOptions,
+    ) -> Self {
+        assert!(C == 3 || C == 1 && plan.transport == Transport::Mono, "channels as planned");
+        let samples = options.samples(&scene.film);
+        let strategies = Strategies {
+            next_event: plan.next_event_estimation,
+            hits: true,
+            equiangular: plan.next_event_estimation && plan.media == Media::Scattering,
+        };
+        Self { scene, integrator, strategies, samples, share: 1.0 / f64::from(samples.get()) }
+    }
+
+    /// All paths of a strip's pixels; returns their ledger.
+    fn render(&self, id: PassId, width: usize, strip: &mut Strip<'_, C>) -> Ledger {
+        let mut ledger = Ledger::default();
+        let (columns, rows) = grid(self.samples);
+        for pixel in strip.pixels() {
+            let mut rng = Stream::new(id.seed, id.index, pixel as u64);
+            let corner = ((pixel % width) as f64, (pixel / width) as f64);
+            for sample in 0..self.samples.get() {
+                let (column, row) = (sample % columns, sample / columns);
+                let x = corner.0 + (f64::from(column) + rng.uniform()) / f64::from(columns);
+                let y = corner.1 + (f64::from(row) + rng.uniform()) / f64::from(rows);
+                let direction = self.scene.sensor.direction(x, y);
+                Walk::new(self, direction, &mut rng, &mut ledger, (&mut *strip, pixel)).run();
+            }
+        }
+        ledger
+    }
+}
+
+impl<const C: usize> Method<C> for PathTracer<'_, C> {
+    fn name(&self) -> &'static str {
+        "path"
+    }
+
+    fn options(&self) -> serde_json::Value {
+        serde_json::json!({ "samples_per_pass": self.samples })
+    }
+
+    fn pass(&self, id: PassId, film: &mut TransientFilm<C>) -> PassReport {
+        let layout = *film.layout();
+        let mut report = PassReport::default();
+        for ledger in film.add_pass(|strip| self.render(id, layout.width, strip)) {
+            report.ledger.add(&ledger);
+        }
+        let camera_paths = layout.pixels() as u64 * u64::from(self.samples.get());
+        report.counts = Counts { camera_paths, ..Counts::default() };
+        report
+    }
+}
