@@ -133,6 +133,12 @@ impl Clock {
         self.axis.bins + 2
     }
 
+    /// OPL of one bin \[m\].
+    #[inline]
+    pub(crate) fn bin_width(&self) -> f64 {
+        self.axis.bin_width_opl
+    }
+
     /// The cell of an arrival at `opl`, which is finite.
     #[inline]
     pub(crate) fn cell(&self, opl: f64) -> usize {
@@ -142,7 +148,7 @@ impl Clock {
         if opl >= self.end {
             return self.axis.bins + 1;
         }
-        let guess = ((opl - self.axis.start_opl) * self.inverse_width) as usize;
+        let guess = ((opl - self.axis.start_opl) * self.inverse_width) as i64 as usize;
         let below = usize::from(opl < self.axis.edge(guess));
         let above = usize::from(opl >= self.axis.edge(guess + 1));
         1 + guess + above - below

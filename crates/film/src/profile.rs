@@ -7,8 +7,8 @@
 //! however small or large `d` and the interval are. A negative depth is a positive one seen from
 //! the end, with `x = (e − t)/(e − s)` measured from there. Along the cells
 //! `S(x2) = S(x1) + S(x1)·expm1(−d (x2 − x1))` (or a product with `exp`, where that sum would
-//! cancel): mostly one `expm1` per cell, and the parts telescope, so that they add up to the whole
-//! to rounding. The tail is the same with `d x = rate (t − s)` and
+//! cancel): the parts telescope, so that they add up to the whole to rounding, and bins between the
+//! first and the last share their `expm1`. The tail is the same with `d x = rate (t − s)` and
 //! total 1; what is left after the last edge goes to the cell after the window.
 //!
 //! General densities: `quadrature`, then scaled to unit area.
@@ -152,13 +152,44 @@ fn uniform<const C: usize>(
     }
 }
 
-/// What is absorbed over an optical depth; the rest survives.
-#[inline]
-fn absorb(survival: &mut f64, depth: f64) -> f64 {
-    let absorbed = -*survival * (-depth).exp_m1();
-    // The difference is exact enough while most survives, and saves an exponential.
-    *survival = if depth < 0.6 { *survival - absorbed } else { *survival * (-depth).exp() };
-    absorbed
+/// Energy that decays from cell to cell.
+struct Decay {
+    survival: f64,
+    /// What of it a whole bin absorbs, and what survives one.
+    bin: (f64, f64),
+}
+
+impl Decay {
+    /// Of some energy, for a number of whole bins of some depth.
+    fn new(survival: f64, bins: usize, depth: f64) -> Self {
+        let bin = if bins > 0 { Self::parts(depth) } else { (0.0, 1.0) };
+        Self { survival, bin }
+    }
+
+    fn parts(depth: f64) -> (f64, f64) {
+        let absorbed = -(-depth).exp_m1();
+        // The difference is exact enough while most survives, and saves an exponential.
+        (absorbed, if absorbed < 0.5 { 1.0 - absorbed } else { (-depth).exp() })
+    }
+
+    /// What is absorbed over a depth.
+    fn absorb(&mut self, depth: f64) -> f64 {
+        self.take(Self::parts(depth))
+    }
+
+    /// What a whole bin absorbs.
+    fn absorb_bin(&mut self) -> f64 {
+        self.take(self.bin)
+    }
+
+    #[inline]
+    fn take(&mut self, (absorbed, surviving): (f64, f64)) -> f64 {
+        let taken = self.survival * absorbed;
+        // As above; and so the parts add up to the whole.
+        self.survival =
+            if absorbed < 0.5 { self.survival - taken } else { self.survival * surviving };
+        taken
+    }
 }
 
 /// One channel of an exponential.
@@ -182,10 +213,15 @@ fn exponential<const C: usize>(
         }
         return;
     }
-    let mut survival = energy / whole;
+    let (first, last) = (touched.start, touched.end - 1);
+    let bin_depth = steepness * (clock.bin_width() / span.length);
+    let mut decay = Decay::new(energy / whole, last - first - 1, bin_depth);
     let step = |(cell, sum): (usize, &mut Spectrum<C>)| {
-        let part = span.inside(cell, clock) / span.length;
-        sum[channel] += absorb(&mut survival, steepness * part);
+        sum[channel] += if cell == first || cell == last {
+            decay.absorb(steepness * (span.inside(cell, clock) / span.length))
+        } else {
+            decay.absorb_bin()
+        };
     };
     if depth > 0.0 {
         sums.for_each(step);
@@ -205,15 +241,19 @@ fn tail<const C: usize>(
 ) {
     let first = clock.cell(start);
     let (after, inner) = cells.split_last_mut().expect("a pixel has cells");
-    let mut survival = energy;
+    let mut decay =
+        Decay::new(energy, inner.len().saturating_sub(first + 1), rate * clock.bin_width());
     for (cell, sum) in inner.iter_mut().enumerate().skip(first) {
-        let inside = clock.upper(cell) - clock.lower(cell).max(start);
-        sum[channel] += absorb(&mut survival, rate * inside);
-        if survival == 0.0 {
+        sum[channel] += if cell == first {
+            decay.absorb(rate * (clock.upper(cell) - start))
+        } else {
+            decay.absorb_bin()
+        };
+        if decay.survival == 0.0 {
             return;
         }
     }
-    after[channel] += survival;
+    after[channel] += decay.survival;
 }
 
 fn general<const C: usize>(

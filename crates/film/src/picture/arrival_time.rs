@@ -3,9 +3,10 @@
 //! The time of a pixel is the mean of the bins' centres weighted by their energy, or the centre
 //! of the brightest bin. Hues run from blue (early) over green to red (late) at constant lightness
 //! and chroma of OKLCh (Ottosson 2020), so that colour does not feign brightness: `L = 0.75`,
-//! `C = 0.12`, hue 265° to 25°, within sRGB throughout. Early and late are the times that 1 % and
-//! 99 % of the energy precede. Brightness is the steady image, exposed by its own percentile;
-//! a bar below the picture shows the scale.
+//! `C = 0.12`, hue 265° to 25°, within sRGB throughout. Brightness is the steady image, exposed by
+//! its own percentile. Early and late are the times that 1 % and 99 % of the *shown* brightness
+//! precede, so that a lamp seen directly, which may be nearly all of the energy, does not take the
+//! whole scale. A bar below the picture shows the scale.
 
 use std::path::Path;
 
@@ -92,18 +93,18 @@ impl Arrays {
         let pixels = 0..self.pixels();
         let times: Vec<Option<f64>> =
             pixels.clone().map(|pixel| self.arrival(pixel, options.arrival)).collect();
-        let colours = self.colour_range(&times);
+        let exposure =
+            Exposure::new(pixels.map(steady), options.steady_white_percentile, options.exposure);
+        let brightness = |pixel: usize| exposure.display(steady(pixel));
+        let colours = self.colour_range(&times, brightness);
         let span = colours.late_opl - colours.early_opl;
 
-        let exposure =
-            Exposure::new(pixels.map(steady), options.white_percentile, options.exposure);
         let mut samples = Vec::with_capacity(times.len() * 3);
         for (pixel, time) in times.iter().enumerate() {
             let colour = time.map_or([0.0; 3], |time| {
                 scale_colour(if span > 0.0 { (time - colours.early_opl) / span } else { 0.5 })
             });
-            let brightness = exposure.display(steady(pixel));
-            samples.extend(colour.map(|c| srgb(c * brightness)));
+            samples.extend(colour.map(|c| srgb(c * brightness(pixel))));
         }
         let bar = (self.height / 32).max(2);
         samples.resize(samples.len() + self.width * 3, 0);
@@ -122,15 +123,16 @@ impl Arrays {
         Ok(colours)
     }
 
-    /// The times that 1 % and 99 % of the lit pixels' energy precede.
-    fn colour_range(&self, times: &[Option<f64>]) -> ArrivalColours {
-        let energy = |pixel: usize| -> f64 {
-            self.pixel(pixel).chunks_exact(self.channels).map(luminance).sum()
-        };
+    /// The times that 1 % and 99 % of the lit pixels' brightness precede.
+    fn colour_range(
+        &self,
+        times: &[Option<f64>],
+        brightness: impl Fn(usize) -> f64,
+    ) -> ArrivalColours {
         let mut weighted: Vec<(f64, f64)> = times
             .iter()
             .enumerate()
-            .filter_map(|(pixel, time)| time.map(|time| (time, energy(pixel))))
+            .filter_map(|(pixel, time)| time.map(|time| (time, brightness(pixel))))
             .collect();
         weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let total: f64 = weighted.iter().map(|w| w.1).sum();

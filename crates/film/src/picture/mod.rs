@@ -26,8 +26,10 @@ use crate::{Arrays, FilmError, atomic_write};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PictureOptions {
-    /// The part of lit cells (or pixels) that is darker than display white.
+    /// The part of lit cells of the cube that is darker than display white, in frames and streak.
     pub white_percentile: f64,
+    /// The same for pixels of the steady image, where lamps seen directly take a larger part.
+    pub steady_white_percentile: f64,
     /// Brightness on top of that; 2 is one stop up.
     pub exposure: f64,
     /// Bins are averaged in groups so that there are at most this many frames.
@@ -44,6 +46,7 @@ impl Default for PictureOptions {
     fn default() -> Self {
         Self {
             white_percentile: 0.99,
+            steady_white_percentile: 0.95,
             exposure: 1.0,
             max_frames: 300,
             frames_per_second: 20,

@@ -149,6 +149,31 @@ fn early_pixels_are_blue_and_late_ones_red() {
 }
 
 #[test]
+fn a_lamp_takes_neither_the_exposure_nor_the_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arrival.png");
+    let layout = Layout::new(WIDTH, HEIGHT, AXIS).unwrap();
+    let mut film = TransientFilm::<1>::new(layout, FilmOptions::default()).unwrap();
+    film.add_pass(|strip| {
+        for pixel in strip.pixels() {
+            let opl = 3.0 + 0.05 * (pixel % WIDTH) as f64;
+            strip.deposit(pixel, 0.0, &Arrival::Instant(opl), Spectrum::ONE);
+            if pixel < 4 {
+                strip.deposit(pixel, 0.0, &Arrival::Instant(1.1), Spectrum([1e5]));
+            }
+        }
+    });
+    let arrays = film.develop();
+    let colours = arrays.write_arrival_time(&path, &PictureOptions::default()).unwrap();
+    assert!(colours.late_opl > 4.8, "{colours:?}");
+    let picture = decode(&path);
+    let late = &picture.frames[0][3 * (2 * WIDTH - 1)..][..3];
+    assert!(late[0] > 150 && late[0] > late[2], "{late:?}");
+    arrays.write_steady_png(&path, &PictureOptions::default()).unwrap();
+    assert!(decode(&path).frames[0][2 * WIDTH] > 200);
+}
+
+#[test]
 fn grey_cubes_and_black_ones_have_pictures_too_and_steady_ones_say_why_not() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.png");
