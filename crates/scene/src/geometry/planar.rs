@@ -48,6 +48,13 @@ impl Planar {
         }
     }
 
+    /// The corners in order, if it is a parallelogram.
+    pub fn parallelogram(&self) -> Option<[DVec3; 4]> {
+        let (o, u, v) = (self.origin, self.u, self.v);
+        (self.outline == Outline::Parallelogram)
+            .then(|| [o - u - v, o + u - v, o + u + v, o - u + v])
+    }
+
     #[inline]
     pub(super) fn intersect(&self, origin: DVec3, direction: DVec3, t_max: f64) -> Option<f64> {
         let to_plane = self.origin - origin;
