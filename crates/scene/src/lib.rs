@@ -8,9 +8,11 @@
 
 mod assemble;
 mod bsdf;
+pub mod description;
 mod emitter;
 mod flight;
 pub mod geometry;
+pub mod load;
 mod medium;
 mod plan;
 mod sensor;

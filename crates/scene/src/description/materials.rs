@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::values::{Colour, Fraction, Ior, MeanCosine, NonNegative, Positive, grey};
 use super::Reference;
+use super::values::{Colour, Fraction, Ior, MeanCosine, NonNegative, Positive, grey};
 
 /// What a surface does to light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -16,11 +16,11 @@ pub fn schema() -> Value {
     let mut generator = SchemaSettings::draft2020_12().into_generator();
     let mut objects = Kind::TOP_LEVEL.map(|kind| subschema(kind, &mut generator).to_value());
     for object in &mut objects {
-        without_null(object);
+        tidy(object);
     }
     let background = generator.subschema_for::<Medium>().to_value();
     let mut definitions = Value::Object(generator.take_definitions(true));
-    without_null(&mut definitions);
+    tidy(&mut definitions);
     json_schema!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "Transient scene",
@@ -61,13 +61,18 @@ fn subschema(kind: Kind, generator: &mut SchemaGenerator) -> Schema {
     }
 }
 
-/// An optional value may be left out, but not be `null`: schemars writes both, we say one.
-fn without_null(schema: &mut Value) {
+/// An optional value may be left out, but not be `null`: schemars writes both, we say one. And
+/// doc comments become plain text.
+fn tidy(schema: &mut Value) {
     match schema {
-        Value::Array(items) => items.iter_mut().for_each(without_null),
+        Value::Array(items) => items.iter_mut().for_each(tidy),
         Value::Object(object) => {
-            object.values_mut().for_each(without_null);
+            object.values_mut().for_each(tidy);
             remove_null_type(object);
+            if let Some(Value::String(text)) = object.get_mut("description") {
+                *text = text.replace("\n\n", "\r").replace('\n', " ").replace('\r', "\n\n");
+                *text = text.replace("\\[", "[").replace("\\]", "]");
+            }
         }
         _ => {}
     }
