@@ -252,6 +252,54 @@ proptest! {
     }
 }
 
+/// Mesh files that are nearly right.
+fn mesh_text() -> impl Strategy<Value = (String, Vec<u8>)> {
+    let number = prop_oneof![
+        8 => (-9..9_i32).prop_map(|n| n.to_string()),
+        1 => "[-0-9.e/]{0,6}",
+        1 => Just("nan".to_owned()),
+        1 => Just("1e308".to_owned()),
+    ];
+    let line = ("(v|f|vn|#|)", vec(number.clone(), 0..6))
+        .prop_map(|(w, n)| format!("{w} {}", n.join(" ")));
+    let obj = vec(line, 0..20).prop_map(|lines| ("obj".to_owned(), lines.join("\n").into_bytes()));
+    let header = ("(ascii|binary_little_endian|binary_big_endian)", 0..6_u64, 0..4_u64, any::<bool>())
+        .prop_map(|(format, vertices, faces, huge)| {
+            let faces = if huge { u64::MAX } else { faces };
+            format!(
+                "ply\nformat {format} 1.0\nelement vertex {vertices}\nproperty float x\nproperty float y\n\
+                 property float z\nelement face {faces}\nproperty list uchar int vertex_indices\nend_header\n"
+            )
+        });
+    let body = prop_oneof![
+        vec(any::<u8>(), 0..200),
+        vec(vec(number, 0..6), 0..12).prop_map(|lines| {
+            let lines: Vec<_> = lines.iter().map(|words| words.join(" ")).collect();
+            lines.join("\n").into_bytes()
+        }),
+    ];
+    let ply = (header, body, any::<prop::sample::Index>()).prop_map(|(header, body, cut)| {
+        let mut bytes = header.into_bytes();
+        bytes.extend(body);
+        bytes.truncate(cut.index(2 * bytes.len() + 1).max(1));
+        ("ply".to_owned(), bytes)
+    });
+    prop_oneof![obj, ply]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1024, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_meshes((format, bytes) in mesh_text()) {
+        let directory = tempfile::tempdir().expect("a directory");
+        std::fs::write(directory.path().join("mesh"), bytes).expect("written");
+        let value = format!("{{\"type\": \"{format}\", \"filename\": \"mesh\"}}");
+        let text = crate::scene_with("mesh", &value);
+        sound(parse_scene(&text, "scene.json", directory.path(), &[]).map(drop));
+    }
+}
+
 #[test]
 fn deep_nesting_does_not_exhaust_the_stack() {
     for (open, close) in [("[", "]"), ("{\"a\":", "}")] {
