@@ -1,1 +1,57 @@
-//! Transient photon beams: photon tracing, ray-beam kernels and the gather.
+//! Floor 3: transient photon beams (Marco et al. 2017; Jarosz et al. 2011), the method that
+//! connects light and camera by density estimation instead of by chance.
+//!
+//! A pass of [`PhotonBeams`] has three steps.
+//!
+//! 1. [`photons`]: photons leave the emitters, scatter in media and on surfaces, and leave a
+//!    [`beam::Beam`] in each span of a scattering medium and a [`beam::SurfacePhoton`] at each
+//!    diffuse surface.
+//! 2. [`beam_map`] and [`surface_map`] sort what they left.
+//! 3. The camera's rays gather it: in media by a ray-beam kernel ([`kernel1d`], [`kernel2d`]), on
+//!    surfaces by a disc. Emission seen and direct light on surfaces are computed without blur.
+//!
+//! **What is biased by what.** Light last scattered in a medium is blurred by the beams' radius;
+//! light last scattered on a diffuse surface, except straight from an emitter, by the disc's; both
+//! to second order in their radius away from borders. Everything else is unbiased. Each light path
+//! is counted once: by its last scattering event that is not specular it belongs to exactly one of
+//! emission, beams, direct light and surface photons.
+//!
+//! **Consistency.** Radii shrink with the pass as (i + 1)^(−`radius_exponent`). Ray and beam meet
+//! with probability ∝ R and add ∝ 1/R, so that variance after n passes is ∝ 1/(nR) and bias² is
+//! ∝ R⁴: R ∝ i^(−1/5) makes the mean square error fall as n^(−4/5). A bin is no blur: it is
+//! what the sensor measures.
+//!
+//! **Time** is optical path length from the emitter to the eye: τ_b + τ_r + η (s_b + s_r), the
+//! source's equation 5 with the camera's leg.
+//!
+//! **Determinism.** A pass depends on scene, plan, options, seed and pass index only. Photons and
+//! pixels have random streams of their own; beams are stored in the order of photons.
+
+pub mod beam;
+pub mod beam_map;
+mod camera;
+pub mod contribution;
+pub mod kernel;
+pub mod kernel1d;
+pub mod kernel2d;
+mod method;
+mod options;
+pub mod photons;
+mod specular;
+pub mod surface_map;
+
+pub use method::PhotonBeams;
+pub use options::{BeamLength, BeamOptions, KernelChoice, OptionError, Settings, Temporal};
+
+/// Items of the random streams: photons count from 0, pixels from 2⁶³.
+pub(crate) mod stream_item {
+    /// The stream of a photon.
+    pub(crate) const fn photon(index: u64) -> u64 {
+        index
+    }
+
+    /// The stream of a pixel.
+    pub(crate) const fn pixel(index: usize) -> u64 {
+        (1 << 63) | index as u64
+    }
+}

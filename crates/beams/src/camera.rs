@@ -1,0 +1,259 @@
+//! The camera's side: rays from the eye that gather beams, and what they see on surfaces.
+//!
+//! A camera path follows null boundaries (within a flight), mirrors and glass (one choice by the
+//! Fresnel reflectance; radiance changes by (η before/η behind)² where it crosses) to the first
+//! surface that does not act as a mirror. On each span of a medium it gathers beams. At the end it
+//! adds
+//!
+//! * emission, exact in time: unbiased;
+//! * direct light by next-event estimation through null boundaries: unbiased;
+//! * all other light by the density of surface photons: blurred over their disc
+//!   ([`crate::surface_map`]).
+//!
+//! Light whose last scattering is in a medium comes from the beams alone, blurred by their kernel.
+//! Each light path thus belongs to exactly one part, by its last scattering event that is not
+//! specular: none (emission), a medium (beams), a diffuse surface lit straight by an emitter that
+//! can be connected to (next-event estimation), a diffuse surface lit otherwise (photons).
+//!
+//! The parts differ in cost and variance, so a pass may start more paths for one than for another:
+//! path i gathers beams if i < `gather_samples`, and ends on a surface if i < `surface_samples`.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use tpb_film::{Arrival, Strip};
+use tpb_optics::{Rgb, Spectrum, Stream, fresnel};
+use tpb_scene::{Bsdf, Flight, Hit, IntegratorSpec, Plan, Reflector, Scene, Vertex};
+
+use crate::Settings;
+use crate::beam::CameraRay;
+use crate::beam_map::{BeamMap, Pairs};
+use crate::kernel::RayBeamKernel;
+use crate::specular::Crossing;
+use crate::surface_map::SurfaceMap;
+
+/// Largest probability to survive roulette, so that light that loses nothing ends too.
+const LARGEST_SURVIVAL: f64 = 0.95;
+
+/// All that a pixel's estimate reads.
+pub(crate) struct Camera<'a, const C: usize, K> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) plan: &'a Plan,
+    pub(crate) integrator: IntegratorSpec,
+    pub(crate) settings: &'a Settings,
+    pub(crate) beams: &'a BeamMap<C>,
+    pub(crate) photons: &'a SurfaceMap<C>,
+    pub(crate) kernel: K,
+}
+
+/// A camera path under way, and where it deposits.
+struct Path<'s, 'f, const C: usize> {
+    strip: &'s mut Strip<'f, C>,
+    pixel: usize,
+    unwarp_opl: f64,
+    vertex: Vertex,
+    direction: DVec3,
+    throughput: Spectrum<C>,
+    opl: f64,
+    /// Specular events so far.
+    events: u32,
+}
+
+impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
+    /// All camera paths of one pixel.
+    pub(crate) fn render(&self, strip: &mut Strip<'_, C>, pixel: usize, rng: &mut Stream) -> Pairs {
+        let Settings { gather_samples, surface_samples, .. } = *self.settings;
+        let gather_samples = if self.plan.beams { gather_samples } else { 0 };
+        let mut pairs = Pairs::default();
+        for sample in 0..gather_samples.max(surface_samples) {
+            let width = self.scene.film.width;
+            let (x, y) = ((pixel % width) as f64, (pixel / width) as f64);
+            let direction = self.scene.sensor.direction(x + rng.uniform(), y + rng.uniform());
+            let share = |samples: u32| (sample < samples).then(|| 1.0 / f64::from(samples));
+            let mut path = Path {
+                strip: &mut *strip,
+                pixel,
+                unwarp_opl: 0.0,
+                vertex: self.scene.eye(),
+                direction,
+                throughput: Spectrum::ONE,
+                opl: 0.0,
+                events: 0,
+            };
+            let shares = (share(gather_samples), share(surface_samples));
+            while self.step(&mut path, shares, rng, &mut pairs) && self.survives(&mut path, rng) {}
+        }
+        pairs
+    }
+
+    /// One flight and the surface at its end; whether the path goes on.
+    fn step(
+        &self,
+        path: &mut Path<'_, '_, C>,
+        (gather, surface): (Option<f64>, Option<f64>),
+        rng: &mut Stream,
+        pairs: &mut Pairs,
+    ) -> bool {
+        let flight = self.scene.fly(&path.vertex, path.direction);
+        if let (0, Some(hit)) = (path.events, &flight.hit) {
+            path.unwarp_opl = flight.opl(hit.distance);
+        }
+        if let Some(share) = gather {
+            self.gather(path, &flight, share, pairs);
+        }
+        let Some(hit) = flight.hit else { return false };
+        path.throughput *= flight.transmittance(self.scene, hit.distance);
+        if path.throughput.is_zero() {
+            return false;
+        }
+        path.opl += flight.opl(hit.distance);
+        path.vertex = Vertex {
+            position: hit.position,
+            primitive: Some(hit.primitive),
+            region: flight.last_region(),
+        };
+        if let Some(share) = surface {
+            self.emission(path, &hit, share);
+        }
+        let front = path.direction.dot(hit.normal) < 0.0;
+        let normal = if front { hit.normal } else { -hit.normal };
+        match self.scene.shape(hit.primitive).bsdf {
+            Bsdf::Null => unreachable!("flights cross null boundaries"),
+            Bsdf::Dielectric(glass) => {
+                let crossing = Crossing::choose(&glass, path.direction, hit.normal, rng);
+                if crossing.transmitted {
+                    let to_front = crossing.direction.dot(hit.normal) > 0.0;
+                    let shape = self.scene.shape(hit.primitive);
+                    path.vertex.region =
+                        self.scene.region_beyond(shape, to_front, path.vertex.region);
+                }
+                let radiance = crossing.eta_ratio * crossing.eta_ratio;
+                path.throughput *= crossing.factor.channels() * radiance;
+                path.direction = crossing.direction;
+            }
+            Bsdf::Opaque { front: on_front, back } => match if front { on_front } else { back } {
+                Reflector::Black => return false,
+                Reflector::Mirror(rho) => {
+                    path.throughput *= rho.channels();
+                    path.direction = fresnel::reflect(path.direction, normal);
+                }
+                Reflector::Diffuse(rho) => {
+                    if let (Some(share), false) = (surface, rho.is_zero()) {
+                        self.direct(path, normal, rho, share, rng);
+                        self.indirect(path, &hit, normal, rho, share);
+                    }
+                    return false;
+                }
+            },
+        }
+        path.events += 1;
+        self.integrator.reaches(path.events + 1) && !path.throughput.is_zero()
+    }
+
+    /// Beams seen along a flight.
+    fn gather(&self, path: &mut Path<'_, '_, C>, flight: &Flight, share: f64, pairs: &mut Pairs) {
+        let temporal = self.settings.temporal;
+        for span in &flight.spans {
+            let Some(id) = span.region.medium else { continue };
+            let medium = self.scene.medium(id);
+            if !medium.coefficients.scatters() {
+                continue;
+            }
+            let ray = CameraRay {
+                origin: flight.at(span.start),
+                direction: flight.direction,
+                length: span.end - span.start,
+                opl: path.opl + flight.opl(span.start),
+                throughput: path.throughput * flight.transmittance(self.scene, span.start),
+                coefficients: medium.coefficients.channels(),
+                phase: medium.phase,
+                eta: span.region.eta,
+            };
+            let found = self.beams.query(self.kernel, id, &ray, |beam, meeting| {
+                if self.integrator.counts(beam.depth + path.events) {
+                    let contribution = self.kernel.contribution(meeting, beam, &ray);
+                    let target = (&mut *path.strip, path.pixel, path.unwarp_opl);
+                    contribution.deposit(temporal, share, target);
+                }
+            });
+            pairs.tested += found.tested;
+            pairs.accepted += found.accepted;
+        }
+    }
+
+    /// Light of an emitter that is seen.
+    fn emission(&self, path: &mut Path<'_, '_, C>, hit: &Hit, share: f64) {
+        if !self.integrator.counts(path.events + 1) {
+            return;
+        }
+        if let Some(radiance) = self.scene.emitted::<C>(hit, path.direction) {
+            let energy = path.throughput * radiance * share;
+            path.deposit(path.opl, energy);
+        }
+    }
+
+    /// Next-event estimation at a diffuse surface.
+    fn direct(
+        &self,
+        path: &mut Path<'_, '_, C>,
+        normal: DVec3,
+        rho: Rgb,
+        share: f64,
+        rng: &mut Stream,
+    ) {
+        if !self.plan.next_event_estimation || !self.integrator.counts(path.events + 2) {
+            return;
+        }
+        let samples = self.settings.light_samples;
+        let reflected = path.throughput * rho.channels() * (share / (PI * f64::from(samples)));
+        for _ in 0..samples {
+            let Some(point) = self.scene.sample_light(rng) else { return };
+            let Some(light) = self.scene.incident::<C>(&point, path.vertex.position) else {
+                continue;
+            };
+            let cosine = light.direction.dot(normal);
+            if cosine <= 0.0 {
+                continue;
+            }
+            let way =
+                self.scene.connect(&path.vertex, light.direction, light.distance, point.primitive);
+            if let Some(flight) = way {
+                let left = flight.transmittance(self.scene, light.distance);
+                let energy = reflected * light.flux * left * (cosine / point.pdf);
+                path.deposit(path.opl + flight.opl(light.distance), energy);
+            }
+        }
+    }
+
+    /// The density of surface photons.
+    fn indirect(&self, path: &mut Path<'_, '_, C>, hit: &Hit, normal: DVec3, rho: Rgb, share: f64) {
+        if !self.plan.surface_photons {
+            return;
+        }
+        let area = self.photons.area(self.scene, hit);
+        let reflected = path.throughput * rho.channels() * (share / (PI * area));
+        let eta = path.vertex.region.eta;
+        self.photons.query(self.scene, hit, normal, |photon| {
+            if self.integrator.counts(photon.depth + path.events) {
+                let lag = eta * photon.direction.dot(hit.position - photon.position);
+                path.deposit(path.opl + photon.opl + lag, reflected * photon.power);
+            }
+        });
+    }
+
+    /// Russian roulette between mirrors.
+    fn survives(&self, path: &mut Path<'_, '_, C>, rng: &mut Stream) -> bool {
+        if path.events < self.integrator.rr_depth {
+            return true;
+        }
+        let survival = path.throughput.max_channel().min(LARGEST_SURVIVAL);
+        path.throughput = path.throughput / survival;
+        rng.uniform() < survival
+    }
+}
+
+impl<const C: usize> Path<'_, '_, C> {
+    fn deposit(&mut self, opl: f64, energy: Spectrum<C>) {
+        self.strip.deposit(self.pixel, self.unwarp_opl, &Arrival::Instant(opl), energy);
+    }
+}

@@ -1,0 +1,56 @@
+//! What the gather asks of a blur kernel.
+
+use glam::DVec3;
+
+use crate::beam::{Beam, CameraRay};
+use crate::contribution::Contribution;
+
+/// A blur kernel for pairs of a beam and a camera ray; a pure function of the pair.
+///
+/// Both kernels accept a pair only if some point of the ray (within its segment) has its foot on
+/// the beam (within *its* segment) and lies within the kernel's radius of that foot. That point is
+/// the *reporting point*: a beam may be stored in pieces, and the piece that holds the reporting
+/// point's foot is the one that counts the pair.
+pub trait RayBeamKernel: Copy + Sync {
+    /// The geometry of an accepted pair.
+    type Meeting;
+
+    /// The geometry, if the kernel joins beam and ray.
+    fn meet(
+        self,
+        origin: DVec3,
+        direction: DVec3,
+        length: f64,
+        ray_origin: DVec3,
+        ray_direction: DVec3,
+        ray_length: f64,
+    ) -> Option<Self::Meeting>;
+
+    /// Foot of the reporting point: distance along the beam \[m\].
+    fn reporting_point(meeting: &Self::Meeting) -> f64;
+
+    /// The energy and its arrival.
+    fn contribution<const C: usize>(
+        self,
+        meeting: &Self::Meeting,
+        beam: &Beam<C>,
+        ray: &CameraRay<C>,
+    ) -> Contribution<C>;
+
+    /// [`RayBeamKernel::meet`] and [`RayBeamKernel::contribution`] of one pair.
+    fn evaluate<const C: usize>(
+        self,
+        beam: &Beam<C>,
+        ray: &CameraRay<C>,
+    ) -> Option<Contribution<C>> {
+        let meeting = self.meet(
+            beam.origin,
+            beam.direction,
+            beam.length,
+            ray.origin,
+            ray.direction,
+            ray.length,
+        )?;
+        Some(self.contribution(&meeting, beam, ray))
+    }
+}

@@ -1,0 +1,105 @@
+//! The method: one pass traces photons, sorts what they left, and gathers it pixel by pixel.
+
+use tpb_film::TransientFilm;
+use tpb_optics::Stream;
+use tpb_render::{Counts, Method, PassId, PassReport};
+use tpb_scene::{IntegratorSpec, Plan, Scene};
+
+use crate::beam_map::{BeamMap, Pairs};
+use crate::camera::Camera;
+use crate::kernel::RayBeamKernel;
+use crate::kernel1d::Kernel1d;
+use crate::kernel2d::Kernel2d;
+use crate::photons::PhotonTracer;
+use crate::surface_map::SurfaceMap;
+use crate::{BeamOptions, KernelChoice, OptionError, Settings, stream_item};
+
+/// The transient photon beams renderer of one scene.
+pub struct PhotonBeams<'a> {
+    scene: &'a Scene,
+    plan: &'a Plan,
+    integrator: IntegratorSpec,
+    settings: Settings,
+}
+
+impl<'a> PhotonBeams<'a> {
+    /// For a scene, its plan, and the depths of this run. Defaults are chosen for the scene's film.
+    ///
+    /// # Errors
+    /// [`OptionError`] for options out of their range.
+    pub fn new(
+        scene: &'a Scene,
+        plan: &'a Plan,
+        integrator: IntegratorSpec,
+        options: &BeamOptions,
+    ) -> Result<Self, OptionError> {
+        let settings = Settings::new(scene, plan, options)?;
+        Ok(Self { scene, plan, integrator, settings })
+    }
+
+    /// All options, defaults filled in.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    fn gather<const C: usize, K: RayBeamKernel>(
+        &self,
+        id: PassId,
+        film: &mut TransientFilm<C>,
+        kernel: K,
+        beams: &BeamMap<C>,
+        photons: &SurfaceMap<C>,
+    ) -> Pairs {
+        let Self { scene, plan, integrator, settings } = self;
+        let integrator = *integrator;
+        let camera = Camera { scene, plan, integrator, settings, beams, photons, kernel };
+        let found = film.add_pass(|strip| {
+            let mut pairs = Pairs::default();
+            for pixel in strip.pixels() {
+                let mut rng = Stream::new(id.seed, id.index, stream_item::pixel(pixel));
+                pairs.add(camera.render(strip, pixel, &mut rng));
+            }
+            pairs
+        });
+        let mut pairs = Pairs::default();
+        for more in found {
+            pairs.add(more);
+        }
+        pairs
+    }
+}
+
+impl<const C: usize> Method<C> for PhotonBeams<'_> {
+    fn name(&self) -> &'static str {
+        "beams"
+    }
+
+    fn options(&self) -> serde_json::Value {
+        serde_json::to_value(&self.settings).expect("settings are plain data")
+    }
+
+    fn pass(&self, id: PassId, film: &mut TransientFilm<C>) -> PassReport {
+        let Self { scene, plan, integrator, settings } = self;
+        let shrink = (id.index as f64 + 1.0).powf(-settings.radius_exponent);
+        let radius = settings.radius * shrink;
+        let count = if plan.beams || plan.surface_photons { settings.photons_per_pass } else { 0 };
+        let tracer = PhotonTracer { scene, plan, integrator: *integrator, length: settings.length };
+        let traced = tracer.trace::<C>(id, count);
+        let photons = SurfaceMap::new(&traced.surface, settings.surface_radius * shrink);
+        let beams = BeamMap::new(traced.beams, radius, settings.piece_radii * radius);
+        let pairs = match settings.kernel {
+            KernelChoice::OneD => self.gather(id, film, Kernel1d { radius }, &beams, &photons),
+            KernelChoice::TwoD => self.gather(id, film, Kernel2d { radius }, &beams, &photons),
+        };
+        let samples = settings.gather_samples.max(settings.surface_samples);
+        let counts = Counts {
+            camera_paths: film.layout().pixels() as u64 * u64::from(samples),
+            photon_paths: count,
+            beams: beams.beams().len() as u64,
+            surface_photons: traced.surface.len() as u64,
+            pairs_tested: pairs.tested,
+            pairs_accepted: pairs.accepted,
+        };
+        PassReport { ledger: traced.ledger, counts }
+    }
+}

@@ -1,0 +1,7 @@
+//! Tests of the method against quadrature, brute force and known scenes; all seeds are fixed.
+
+mod fog;
+mod gather;
+mod kernels;
+mod scenes;
+mod transport;
