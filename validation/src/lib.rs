@@ -1,1 +1,30 @@
-//! Validation: experiments, statistics of comparison, equal-time runs, negative controls.
+//! Floor 4: experiments that compare the renderers with the analytic reference and with each
+//! other, and the statistics that judge them.
+//!
+//! * [`statistics`]: batches, tests, equivalence, ratios, the split of an error.
+//! * [`experiment`]: what an experiment is; its sabotaged twin; [`registry`]: all of them.
+//! * [`experiments`]: the questions themselves, one module for each subject.
+//! * [`cube`], [`contrasts`], [`measure`]: time-resolved images as numbers, reduced to the few
+//!   that are judged, batch by batch.
+//! * [`equal_time`], [`reference_cube`]: methods against each other at equal time, and the long
+//!   render that both are compared with.
+//! * [`suite`], [`report`]: running many, and what is printed and written.
+
+pub mod contrasts;
+pub mod cube;
+pub mod equal_time;
+mod error;
+pub mod experiment;
+pub mod experiments;
+pub mod measure;
+pub mod reference_cube;
+pub mod registry;
+pub mod report;
+pub mod scenes;
+pub mod statistics;
+pub mod suite;
+
+pub use error::{Result, ValidationError};
+pub use tpb_render::with_threads;
+
+pub use experiment::{Context, Effort, Experiment, Outcome, Sabotage, Twin, Verdict};

@@ -1,0 +1,210 @@
+//! One smooth interface between two lamps: the choice between reflection and refraction.
+//!
+//! The camera looks at a plane interface under the angle θ_i. Reflection shows one lamp with radiance
+//! R L_r, refraction another with (1 − R) L_t (η_i/η_t)²: radiance over η² is what refraction keeps.
+//! They arrive at different times, so that the bins tell them apart: probability of the choice,
+//! its weight, the factor η², total internal reflection and OPL inside glass in one picture. R is
+//! written here from the amplitudes r_s = −sin(θ_i − θ_t)/sin(θ_i + θ_t),
+//! r_p = tan(θ_i − θ_t)/tan(θ_i + θ_t).
+
+use glam::{DAffine3, DVec3};
+use tpb_beams::BeamOptions;
+use tpb_optics::Rgb;
+use tpb_path::PathOptions;
+use tpb_scene::geometry::{Outline, Planar};
+use tpb_scene::{
+    Bsdf, Dielectric, FovAxis, Primitive, Reflector, Scene, Sensor, ShapePart, TimeSpec,
+};
+
+use crate::contrasts::{LinearContrast, targets};
+use crate::cube::Cube;
+use crate::error::Result;
+use crate::experiment::{Context, Experiment, Outcome};
+use crate::measure::{BatchPlan, Estimator, batches, layout};
+use crate::scenes::{View, only_depth};
+use crate::statistics::{Batches, Criterion, Target, judge};
+
+const TIME: TimeSpec = TimeSpec { start_opl: 0.0, bin_width_opl: 0.25, bins: 160 };
+const REFLECTED: f64 = 3.0;
+const TRANSMITTED: f64 = 2.0;
+const GLASS: f64 = 1.5;
+const SIDE: usize = 8;
+
+/// Angle of incidence in degrees, and whether the camera is inside the glass.
+const CASES: [(f64, bool); 5] =
+    [(10.0, false), (75.0, false), (82.0, false), (40.5, true), (60.0, true)];
+
+/// A method that chooses at interfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FresnelChoice {
+    /// The path tracer.
+    Path,
+    /// The camera's side of photon beams.
+    Beams,
+}
+
+/// What is expected of one case.
+struct Expected {
+    reflected: f64,
+    transmitted: f64,
+    reflected_opl: f64,
+    transmitted_opl: f64,
+}
+
+fn expected(angle: f64, inside: bool) -> Expected {
+    let (eta_i, eta_t) = if inside { (GLASS, 1.0) } else { (1.0, GLASS) };
+    let theta_i = angle.to_radians();
+    let sine = eta_i / eta_t * theta_i.sin();
+    let reflected_opl = eta_i * 3.0 / theta_i.cos();
+    if sine >= 1.0 {
+        let nothing = Expected {
+            reflected: REFLECTED,
+            transmitted: 0.0,
+            reflected_opl,
+            transmitted_opl: 0.0,
+        };
+        return nothing;
+    }
+    let theta_t = sine.asin();
+    let s = (theta_i - theta_t).sin() / (theta_i + theta_t).sin();
+    let p = (theta_i - theta_t).tan() / (theta_i + theta_t).tan();
+    let reflectance = 0.5 * (s * s + p * p);
+    Expected {
+        reflected: reflectance * REFLECTED,
+        transmitted: (1.0 - reflectance) * TRANSMITTED * (eta_i / eta_t).powi(2),
+        reflected_opl,
+        transmitted_opl: eta_i / theta_i.cos() + eta_t / theta_t.cos(),
+    }
+}
+
+/// Interface at z = 1, a lamp behind it at z = 2, and one behind the camera at z = −1.
+fn scene(angle: f64, inside: bool) -> Result<Scene> {
+    let view = View { pixels: SIDE, fov: 0.01, time: Some(TIME), integrator: only_depth(2) };
+    let mut parts = view.parts();
+    let to_world = DAffine3::from_rotation_y(angle.to_radians());
+    parts.sensor = Sensor::perspective(to_world, view.fov, FovAxis::X, SIDE, SIDE);
+    let disc = |z: f64, towards: f64| {
+        let (u, v) = (100.0 * DVec3::X, 100.0 * towards * DVec3::Y);
+        vec![Primitive::Planar(Planar::new(DVec3::new(0.0, 0.0, z), u, v, Outline::Ellipse))]
+    };
+    let lamp = |name: &str, z, towards, radiance| ShapePart {
+        name: name.into(),
+        primitives: disc(z, towards),
+        bsdf: Bsdf::Opaque { front: Reflector::Black, back: Reflector::Black },
+        boundary: None,
+        radiance: Some(Rgb::splat(radiance)),
+    };
+    // The interior is opposite to the normal.
+    let glass = Dielectric {
+        interior_eta: GLASS,
+        exterior_eta: 1.0,
+        reflectance: Rgb::ONE,
+        transmittance: Rgb::ONE,
+    };
+    parts.shapes = vec![
+        ShapePart {
+            name: "interface".into(),
+            primitives: disc(1.0, if inside { 1.0 } else { -1.0 }),
+            bsdf: Bsdf::Dielectric(glass),
+            boundary: None,
+            radiance: None,
+        },
+        lamp("behind the interface", 2.0, -1.0, TRANSMITTED),
+        lamp("behind the camera", -1.0, 1.0, REFLECTED),
+    ];
+    Ok(Scene::assemble(parts)?)
+}
+
+/// The light of all pixels that arrives within a bin of `opl`.
+fn around(name: String, opl: f64) -> LinearContrast {
+    let bin = (opl / TIME.bin_width_opl).floor() as usize + 1;
+    let weight = |cell: usize| f64::from(u8::from(cell.abs_diff(bin) <= 1));
+    let per_pixel = 1.0 / (SIDE * SIDE) as f64;
+    let weights = (0..TIME.bins + 2).map(|cell| weight(cell) * per_pixel).collect();
+    LinearContrast { name, pixels: (0..SIDE * SIDE).collect(), weights }
+}
+
+impl FresnelChoice {
+    fn estimator(self) -> Estimator {
+        match self {
+            Self::Path => Estimator::Path(PathOptions { samples_per_pass: 3600.try_into().ok() }),
+            Self::Beams => Estimator::Beams(BeamOptions {
+                surface_samples: Some(3600),
+                ..BeamOptions::default()
+            }),
+        }
+    }
+
+    fn case(
+        self,
+        context: &Context,
+        angle: f64,
+        inside: bool,
+    ) -> Result<(Vec<Target>, Vec<Vec<f64>>)> {
+        let scene = scene(angle, inside)?;
+        let e = expected(angle, inside);
+        let side = if inside { "from inside" } else { "from outside" };
+        let mut contrasts = vec![];
+        // A rare part is known from its complement.
+        for (what, value, opl) in [
+            ("reflected", e.reflected, e.reflected_opl),
+            ("refracted", e.transmitted, e.transmitted_opl),
+        ] {
+            if value > 0.15 * REFLECTED {
+                contrasts.push((around(format!("{what} at {angle} degrees {side}"), opl), value));
+            }
+        }
+        let plan = BatchPlan { batches: 64, passes: context.effort.pick(1, 4), seed: context.seed };
+        let mut values = Vec::new();
+        batches(&scene, &self.estimator(), layout(&scene.film, 0.0)?, &plan, |cube: &Cube| {
+            values.push(contrasts.iter().map(|(c, _)| c.value(cube)).collect());
+        })?;
+        let linear: Vec<LinearContrast> = contrasts.iter().map(|(c, _)| c.clone()).collect();
+        let mut targets = targets(&linear, &Cube::zero(SIDE, SIDE, TIME.bins), None);
+        for (target, (_, value)) in targets.iter_mut().zip(&contrasts) {
+            // The pixels span a hundredth of a degree.
+            (target.expected, target.error) = (*value, 2e-6 * value);
+        }
+        Ok((targets, values))
+    }
+}
+
+impl Experiment for FresnelChoice {
+    fn name(&self) -> String {
+        format!("fresnel/{}", self.estimator().name())
+    }
+
+    fn description(&self) -> String {
+        "reflection and refraction at one interface, told apart by time, against Fresnel".into()
+    }
+
+    fn run(&self, context: &Context) -> Result<Outcome> {
+        let (mut targets, mut values) = (Vec::new(), vec![Vec::new(); 64]);
+        for (angle, inside) in CASES {
+            let (more, columns) = self.case(context, angle, inside)?;
+            targets.extend(more);
+            for (row, column) in values.iter_mut().zip(columns) {
+                row.extend(column);
+            }
+        }
+        let mut batches = Batches::new();
+        values.into_iter().for_each(|row| batches.push(row));
+        Ok(judge(&targets, &batches, &Criterion::UNBIASED).into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn energy_is_conserved_and_total_reflection_is_total() {
+        for (angle, inside) in CASES {
+            let e = expected(angle, inside);
+            let factor = if inside { GLASS * GLASS } else { 1.0 / (GLASS * GLASS) };
+            let sum = e.reflected / REFLECTED + e.transmitted / (TRANSMITTED * factor);
+            assert!((sum - 1.0).abs() < 1e-14);
+        }
+        assert_eq!(expected(60.0, true).transmitted, 0.0);
+    }
+}

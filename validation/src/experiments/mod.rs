@@ -1,0 +1,10 @@
+//! The questions, one module for each subject.
+
+pub mod energy;
+pub mod equal_time;
+pub mod fresnel;
+pub mod kernels;
+pub mod samplers;
+pub mod single_scatter;
+pub mod sphere;
+pub mod tables;

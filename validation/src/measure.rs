@@ -1,0 +1,107 @@
+//! Estimators under test, and the batches that are made with them.
+//!
+//! A batch is a film of its own with a fixed number of passes; consecutive batches use consecutive
+//! passes of one seed, so that they are independent and repeat to the bit.
+
+use tpb_beams::{BeamOptions, PhotonBeams};
+use tpb_film::{Arrays, FilmOptions, Layout, TimeAxis, TransientFilm};
+use tpb_path::{PathOptions, PathTracer};
+use tpb_render::{Budget, Method, RunSettings, RunSummary, Stopwatch, run};
+use tpb_scene::{FilmSpec, IntegratorSpec, Plan, Scene};
+
+use crate::cube::Cube;
+use crate::error::{Result, ValidationError};
+
+/// A method with its options.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Estimator {
+    /// The path tracer.
+    Path(PathOptions),
+    /// Photon beams.
+    Beams(BeamOptions),
+}
+
+impl Estimator {
+    /// Its name on the command line.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Path(_) => "path",
+            Self::Beams(_) => "beams",
+        }
+    }
+
+    /// The method, ready to make passes.
+    pub fn prepare<'a, const C: usize>(
+        &self,
+        scene: &'a Scene,
+        plan: &'a Plan,
+        integrator: IntegratorSpec,
+    ) -> Result<Box<dyn Method<C> + 'a>> {
+        Ok(match self {
+            Self::Path(options) => Box::new(PathTracer::<C>::new(scene, plan, integrator, options)),
+            Self::Beams(options) => Box::new(
+                PhotonBeams::new(scene, plan, integrator, options)
+                    .map_err(|error| ValidationError::unusable("photon beams", error))?,
+            ),
+        })
+    }
+}
+
+/// How many batches, of how many passes, with which random numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BatchPlan {
+    /// Independent batches.
+    pub batches: u64,
+    /// Passes of each.
+    pub passes: u64,
+    /// Seed.
+    pub seed: u64,
+}
+
+/// The film that a scene asks for, its window later by `shift` \[m\].
+pub fn layout(spec: &FilmSpec, shift: f64) -> Result<Layout> {
+    let time = spec.time.map(|time| TimeAxis {
+        start_opl: time.start_opl + shift,
+        bin_width_opl: time.bin_width_opl,
+        bins: time.bins,
+    });
+    Ok(Layout::new(spec.width, spec.height, time)?)
+}
+
+/// Passes of a prepared method into a new film.
+pub fn render<const C: usize>(
+    method: &dyn Method<C>,
+    layout: Layout,
+    settings: &RunSettings,
+) -> Result<(Arrays, RunSummary)> {
+    let mut film = TransientFilm::<C>::new(layout, FilmOptions::default())?;
+    let summary = run(method, &mut film, settings, &Stopwatch::start(), &mut ());
+    if film.non_finite() > 0 {
+        let reason = format!("{} contributions were not finite", film.non_finite());
+        return Err(ValidationError::unusable(method.name(), reason));
+    }
+    Ok((film.develop(), summary))
+}
+
+/// Renders achromatic batches and hands each cube over.
+pub fn batches(
+    scene: &Scene,
+    estimator: &Estimator,
+    layout: Layout,
+    plan: &BatchPlan,
+    mut each: impl FnMut(&Cube),
+) -> Result<()> {
+    let integrator = scene.integrator;
+    let needs = Plan::new(scene, &integrator);
+    let method = estimator.prepare::<1>(scene, &needs, integrator)?;
+    for batch in 0..plan.batches {
+        let settings = RunSettings {
+            seed: plan.seed,
+            budget: Budget::Passes(plan.passes),
+            first_pass: batch * plan.passes,
+        };
+        let (arrays, _) = render(&*method, layout, &settings)?;
+        each(&Cube::of(&arrays));
+    }
+    Ok(())
+}

@@ -1,0 +1,361 @@
+//! The long render that methods are compared with: making, keeping and reading it.
+//!
+//! A reference cube is the mean of many passes of the unbiased path tracer. It is kept small
+//! enough to ship: half floats, with a scale of its own for each frame so that dark frames keep
+//! their digits, compressed. What the rounding adds is known exactly when the file is made, and it
+//! is counted as variance. NumPy reads the file:
+//!
+//! | key | type, shape | |
+//! | --- | --- | --- |
+//! | `transient` | f2 (H, W, T) | bins over the scale of their frame |
+//! | `scale` | f8 (T) | to be multiplied with |
+//! | `mask` | u1 (H, W) | 1: judged, no emitter is seen within one pixel |
+//! | `variance_pixel` | f8 (H, W) | variance of the mean, summed over bins |
+//! | `variance_frame` | f8 (T) | the same, summed over judged pixels |
+//! | `opl_edges` | f8 (T + 1) | \[m\] |
+//! | `provenance` | u1 (N) | JSON: program, commit, scene, seed, passes, seconds |
+
+use std::fs::{self, File};
+use std::io::{self, BufReader};
+use std::path::Path;
+use std::time::Duration;
+
+use half::f16;
+use npyz::npz::{NpzArchive, NpzWriter};
+use npyz::zip::{CompressionMethod, write::FileOptions};
+use npyz::{AutoSerialize, Deserialize as FromNpy, WriterBuilder};
+use serde::{Deserialize, Serialize};
+use tpb_film::{FilmOptions, TransientFilm, atomic_write};
+use tpb_path::PathOptions;
+use tpb_render::{Budget, RunSettings, Stopwatch, run};
+use tpb_scene::load::LoadedScene;
+use tpb_scene::{IntegratorSpec, Plan, Transport};
+
+use crate::cube::{Cube, dilate};
+use crate::error::{Result, ValidationError};
+use crate::measure::{Estimator, layout, render};
+use crate::statistics::ReferenceNoise;
+
+/// Half floats use this much of their range.
+const LARGEST: f64 = 32_768.0;
+
+/// Camera paths per pixel that look for emitters.
+const MASK_SAMPLES: u32 = 1024;
+
+/// Where a reference comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Program and version.
+    pub program: String,
+    /// Commit of the sources.
+    pub commit: String,
+    /// The scene with all defaults.
+    pub scene: serde_json::Value,
+    /// Seed.
+    pub seed: u64,
+    /// Passes.
+    pub passes: u64,
+    /// Camera paths.
+    pub camera_paths: u64,
+    /// Wall time \[s\].
+    pub wall_seconds: f64,
+    /// CPU time \[s\].
+    pub cpu_seconds: Option<f64>,
+}
+
+/// A reference and what is known of its error.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferenceCube {
+    /// The mean.
+    pub cube: Cube,
+    /// Which pixels are judged.
+    pub mask: Vec<bool>,
+    /// Variance of the mean, summed over a pixel's bins; rounding included.
+    pub variance_pixel: Vec<f64>,
+    /// The same per frame, summed over judged pixels.
+    pub variance_frame: Vec<f64>,
+    /// Edges of the bins \[m\].
+    pub opl_edges: Vec<f64>,
+    /// Where it comes from.
+    pub provenance: Provenance,
+}
+
+impl ReferenceCube {
+    /// Renders a reference for `time`.
+    pub fn make(scene: &LoadedScene, time: Duration, seed: u64, commit: &str) -> Result<Self> {
+        match Plan::new(&scene.scene, &scene.scene.integrator).transport {
+            Transport::Mono => make::<1>(scene, time, seed, commit),
+            Transport::Rgb => make::<3>(scene, time, seed, commit),
+        }
+    }
+
+    /// What the reference adds to errors over the pixels that `include` names.
+    pub fn noise(&self, include: impl Fn(usize) -> bool) -> ReferenceNoise {
+        let mut noise = ReferenceNoise::default();
+        for pixel in (0..self.cube.pixels()).filter(|&pixel| include(pixel)) {
+            let variance = self.variance_pixel[pixel];
+            noise.power += self.cube.pixel_bins(pixel).iter().map(|r| r * r).sum::<f64>();
+            noise.variance += variance;
+            noise.squares += variance * variance;
+            noise.largest = noise.largest.max(variance);
+        }
+        noise
+    }
+
+    /// Writes the file, whole or not at all.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder).map_err(|error| ValidationError::io(folder, error))?;
+        }
+        let Cube { width, height, bins, .. } = self.cube;
+        let scale = self.scales();
+        let halves: Vec<f16> = (0..self.cube.pixels())
+            .flat_map(|pixel| self.cube.pixel_bins(pixel).iter().zip(&scale))
+            .map(|(value, scale)| f16::from_f64(value / scale))
+            .collect();
+        let mask: Vec<u8> = self.mask.iter().map(|&judged| u8::from(judged)).collect();
+        let provenance = serde_json::to_vec(&self.provenance)
+            .map_err(|error| ValidationError::unusable("provenance", error))?;
+        atomic_write(path, |file| {
+            let mut npz = NpzWriter::new(file);
+            put(&mut npz, "transient", &[height, width, bins], &halves)?;
+            put(&mut npz, "scale", &[bins], &scale)?;
+            put(&mut npz, "mask", &[height, width], &mask)?;
+            put(&mut npz, "variance_pixel", &[height, width], &self.variance_pixel)?;
+            put(&mut npz, "variance_frame", &[bins], &self.variance_frame)?;
+            put(&mut npz, "opl_edges", &[bins + 1], &self.opl_edges)?;
+            put(&mut npz, "provenance", &[provenance.len()], &provenance)?;
+            npz.zip_writer().finish()?;
+            Ok(())
+        })?;
+        Ok(())
+    }
+
+    /// Reads what [`ReferenceCube::write`] wrote.
+    pub fn read(path: &Path) -> Result<Self> {
+        let file = File::open(path).map_err(|error| ValidationError::io(path, error))?;
+        let broken =
+            |error: io::Error| ValidationError::unusable(path.display().to_string(), error);
+        let mut npz = NpzArchive::new(BufReader::new(file)).map_err(broken)?;
+        let (shape, halves) = get::<f16>(&mut npz, "transient").map_err(broken)?;
+        let &[height, width, bins] = shape.as_slice() else {
+            return Err(broken(io::Error::other("`transient` does not have 3 dimensions")));
+        };
+        let scale = get::<f64>(&mut npz, "scale").map_err(broken)?.1;
+        let mask = get::<u8>(&mut npz, "mask").map_err(broken)?.1;
+        let variance_pixel = get::<f64>(&mut npz, "variance_pixel").map_err(broken)?.1;
+        let variance_frame = get::<f64>(&mut npz, "variance_frame").map_err(broken)?.1;
+        let opl_edges = get::<f64>(&mut npz, "opl_edges").map_err(broken)?.1;
+        let provenance = get::<u8>(&mut npz, "provenance").map_err(broken)?.1;
+        let pixels = width * height;
+        let fits = bins > 0
+            && (scale.len(), variance_frame.len(), opl_edges.len()) == (bins, bins, bins + 1)
+            && (mask.len(), variance_pixel.len()) == (pixels, pixels);
+        if !fits {
+            return Err(broken(io::Error::other("arrays of different sizes")));
+        }
+        let mut cube = Cube::zero(width, height, bins);
+        for (pixel, halves) in halves.chunks_exact(bins).enumerate() {
+            for ((cell, half), scale) in
+                cube.pixel_mut(pixel)[1..].iter_mut().zip(halves).zip(&scale)
+            {
+                *cell = half.to_f64() * scale;
+            }
+        }
+        Ok(Self {
+            cube,
+            mask: mask.iter().map(|&judged| judged != 0).collect(),
+            variance_pixel,
+            variance_frame,
+            opl_edges,
+            provenance: serde_json::from_slice(&provenance)
+                .map_err(|error| ValidationError::unusable(path.display().to_string(), error))?,
+        })
+    }
+
+    /// Refuses a scene that is not the one that the reference was made of.
+    pub fn check(&self, scene: &LoadedScene) -> Result<()> {
+        if self.provenance.scene == scene.canonical {
+            return Ok(());
+        }
+        let reason = "the scene differs from the one that its reference was made of";
+        Err(ValidationError::unusable("reference cube", reason))
+    }
+
+    fn scales(&self) -> Vec<f64> {
+        let brightest = |bin: usize| {
+            let values = (0..self.cube.pixels()).map(|pixel| self.cube.pixel_bins(pixel)[bin]);
+            values.fold(0.0, f64::max)
+        };
+        let scale = |largest: f64| if largest > 0.0 { largest / LARGEST } else { 1.0 };
+        (0..self.cube.bins).map(|bin| scale(brightest(bin))).collect()
+    }
+
+    /// Rounds to half floats, and counts the error as variance.
+    fn round(&mut self) {
+        let scales = self.scales();
+        for pixel in 0..self.cube.pixels() {
+            for (bin, scale) in scales.iter().enumerate() {
+                let cell = &mut self.cube.pixel_mut(pixel)[bin + 1];
+                let rounded = f16::from_f64(*cell / scale).to_f64() * scale;
+                let error = (rounded - *cell) * (rounded - *cell);
+                *cell = rounded;
+                self.variance_pixel[pixel] += error;
+                if self.mask[pixel] {
+                    self.variance_frame[bin] += error;
+                }
+            }
+        }
+    }
+}
+
+fn make<const C: usize>(
+    loaded: &LoadedScene,
+    time: Duration,
+    seed: u64,
+    commit: &str,
+) -> Result<ReferenceCube> {
+    let scene = &loaded.scene;
+    let plan = Plan::new(scene, &scene.integrator);
+    let started = Stopwatch::start();
+    let estimator = Estimator::Path(PathOptions::default());
+    let method = estimator.prepare::<C>(scene, &plan, scene.integrator)?;
+    let options = FilmOptions { variance: true, ..FilmOptions::default() };
+    let mut film = TransientFilm::<C>::new(layout(&scene.film, 0.0)?, options)?;
+    let settings = RunSettings { seed, budget: Budget::Time(time), first_pass: 0 };
+    let summary = run(&*method, &mut film, &settings, &started, &mut ());
+    let arrays = film.develop();
+    let Some(variance) = &arrays.variance else {
+        let reason = "a reference needs a time axis and at least two passes";
+        return Err(ValidationError::unusable("reference render", reason));
+    };
+    let mask = sees_no_emitter::<C>(loaded)?;
+    let channels = arrays.channels;
+    let cube = Cube::of(&arrays);
+    let mut variance_pixel = vec![0.0; cube.pixels()];
+    let mut variance_frame = vec![0.0; cube.bins];
+    for (index, cell) in variance.chunks_exact(channels).enumerate() {
+        let (pixel, bin) = (index / cube.bins, index % cube.bins);
+        // Of the mean over channels, if they are fully correlated.
+        let root: f64 = cell.iter().map(|&v| f64::from(v).sqrt()).sum::<f64>() / channels as f64;
+        variance_pixel[pixel] += root * root;
+        if mask[pixel] {
+            variance_frame[bin] += root * root;
+        }
+    }
+    let provenance = Provenance {
+        program: concat!("tpb-validation ", env!("CARGO_PKG_VERSION")).into(),
+        commit: commit.into(),
+        scene: loaded.canonical.clone(),
+        seed,
+        passes: summary.passes,
+        camera_paths: summary.report.counts.camera_paths,
+        wall_seconds: summary.wall_seconds,
+        cpu_seconds: summary.cpu_seconds,
+    };
+    let opl_edges = arrays.opl_edges;
+    let mut reference =
+        ReferenceCube { cube, mask, variance_pixel, variance_frame, opl_edges, provenance };
+    reference.round();
+    Ok(reference)
+}
+
+/// Pixels within one pixel of which no emitter is seen, directly or through mirrors and glass:
+/// emission alone, from depth 1 on, without any scattering in between, is what remains when
+/// media and diffuse surfaces are never connected to. Seen directly is depth 1.
+fn sees_no_emitter<const C: usize>(loaded: &LoadedScene) -> Result<Vec<bool>> {
+    let scene = &loaded.scene;
+    let direct = IntegratorSpec { max_depth: Some(1), ..scene.integrator };
+    let plan = Plan::new(scene, &direct);
+    let options = PathOptions { samples_per_pass: MASK_SAMPLES.try_into().ok() };
+    let method = Estimator::Path(options).prepare::<C>(scene, &plan, direct)?;
+    let mut layout = layout(&scene.film, 0.0)?;
+    layout.time = None;
+    let settings = RunSettings { seed: 0, budget: Budget::Passes(1), first_pass: 0 };
+    let (arrays, _) = render(&*method, layout, &settings)?;
+    let lit: Vec<bool> =
+        arrays.steady.chunks_exact(arrays.channels).map(|p| p.iter().any(|&v| v > 0.0)).collect();
+    Ok(dilate(&lit, layout.width, layout.height).into_iter().map(|near| !near).collect())
+}
+
+fn put<T: AutoSerialize + Copy>(
+    npz: &mut NpzWriter<impl io::Write + io::Seek>,
+    name: &str,
+    shape: &[usize],
+    values: &[T],
+) -> io::Result<()> {
+    let options = FileOptions::default().compression_method(CompressionMethod::Deflated);
+    let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
+    let mut member = npz.array(name, options)?.default_dtype().shape(&shape).begin_nd()?;
+    member.extend(values.iter().copied())?;
+    member.finish()
+}
+
+fn get<T: FromNpy>(
+    npz: &mut NpzArchive<BufReader<File>>,
+    name: &str,
+) -> io::Result<(Vec<usize>, Vec<T>)> {
+    let missing = || io::Error::other(format!("has no array `{name}`"));
+    let member = npz.by_name(name)?.ok_or_else(missing)?;
+    let shape = member.shape().iter().map(|&n| n as usize).collect();
+    Ok((shape, member.into_vec()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reference() -> ReferenceCube {
+        let mut cube = Cube::zero(3, 2, 4);
+        for pixel in 0..6 {
+            for (bin, cell) in cube.pixel_mut(pixel)[1..=4].iter_mut().enumerate() {
+                // Frames of very different brightness.
+                *cell = (pixel as f64 + 0.123_456) * 1e-6_f64.powi(bin as i32);
+            }
+        }
+        let mut reference = ReferenceCube {
+            cube,
+            mask: vec![true, false, true, true, true, true],
+            variance_pixel: vec![0.0; 6],
+            variance_frame: vec![0.0; 4],
+            opl_edges: vec![0.0, 1.0, 2.0, 3.0, 4.0],
+            provenance: Provenance {
+                program: "test".into(),
+                commit: "none".into(),
+                scene: serde_json::json!({"type": "scene"}),
+                seed: 1,
+                passes: 2,
+                camera_paths: 3,
+                wall_seconds: 4.0,
+                cpu_seconds: None,
+            },
+        };
+        reference.round();
+        reference
+    }
+
+    #[test]
+    fn a_file_gives_back_what_was_written() {
+        let folder = std::env::temp_dir().join(format!("tpb-reference-{}", std::process::id()));
+        let path = folder.join("cube.npz");
+        let reference = reference();
+        reference.write(&path).unwrap();
+        let back = ReferenceCube::read(&path).unwrap();
+        fs::remove_dir_all(&folder).unwrap();
+        assert_eq!(back, reference);
+    }
+
+    #[test]
+    fn rounding_is_small_in_bright_and_dark_frames_and_counted_as_variance() {
+        let reference = reference();
+        for bin in 0..4 {
+            let exact = 5.123_456 * 1e-6_f64.powi(bin);
+            let kept = reference.cube.pixel_bins(5)[bin as usize];
+            assert!((kept / exact - 1.0).abs() < 5e-4, "bin {bin}");
+        }
+        let noise = reference.noise(|pixel| reference.mask[pixel]);
+        let frames: f64 = reference.variance_frame.iter().sum();
+        assert!(noise.variance > 0.0 && (noise.variance / frames - 1.0).abs() < 1e-12);
+        assert!(noise.variance < 1e-6 * noise.power);
+    }
+}

@@ -1,0 +1,200 @@
+//! Does an estimator have the expectation that it should have?
+//!
+//! For each pre-registered contrast k there are batch means with standard error s_k, and an
+//! expectation r_k known to within e_k. Two questions are asked.
+//!
+//! 1. *Is there a significant difference?* t = max(0, |x̄ − r| − e)/s, Student with B − 1 degrees of
+//!    freedom, Holm over the contrasts at the level of the criterion. Yes: [`Finding::Different`].
+//! 2. *Is a relevant difference excluded?* The confidence interval of the relative error
+//!    (x̄ − r)/r, widened by e/|r|, must lie within ± margin for every contrast
+//!    (Schuirmann's equivalence test). Yes: [`Finding::Equivalent`]. No: [`Finding::Unresolved`],
+//!    which counts as failed: noise is no excuse.
+//!
+//! The false-alarm probability is the chance of anything but `Equivalent` for an unbiased
+//! estimator of the observed noise: the level of question 1, plus for question 2, by Bonferroni,
+//! Σ_k P(|T| > (margin − half width)/s_k). The second part is conditional on the observed s_k.
+//! Likewise the miss probability, for a negative control, is the chance that a difference as
+//! large as observed stays below the critical value of at least one contrast: that of the most
+//! significant one.
+
+use serde::{Deserialize, Serialize};
+
+use super::batches::{Batches, Summary};
+use super::multiple::holm;
+use super::student;
+
+/// The expectation of a contrast.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Target {
+    /// What it is.
+    pub name: String,
+    /// Its expectation, not 0.
+    pub expected: f64,
+    /// Bound of the absolute error of `expected`.
+    pub error: f64,
+}
+
+/// What is asked of a set of contrasts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Criterion {
+    /// Largest relative error that is no defect.
+    pub margin: f64,
+    /// Confidence of the intervals that must lie within the margin.
+    pub confidence: f64,
+    /// Level of the tests for a difference, all contrasts together.
+    pub level: f64,
+}
+
+impl Criterion {
+    /// Estimators without bias: a margin of 0.5 %.
+    pub const UNBIASED: Self = Self { margin: 0.005, confidence: 0.99, level: 1e-8 };
+    /// Blurred estimates against their exact expected blur: a margin of 1 %.
+    pub const BLURRED: Self = Self { margin: 0.01, confidence: 0.99, level: 1e-8 };
+}
+
+/// What was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Finding {
+    /// Within the margin, with confidence.
+    Equivalent,
+    /// Neither within the margin with confidence, nor significantly different.
+    Unresolved,
+    /// Significantly different from the expectation.
+    Different,
+}
+
+/// The result for one contrast.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contrast {
+    /// What it is.
+    pub name: String,
+    /// Its expectation.
+    pub expected: f64,
+    /// Bound of the expectation's error.
+    pub expected_error: f64,
+    /// Mean over batches.
+    pub mean: f64,
+    /// Standard error of the mean.
+    pub standard_error: f64,
+    /// (mean − expected)/standard error.
+    pub z: f64,
+    /// Confidence interval of the relative error.
+    pub interval: [f64; 2],
+    /// Two-sided p value of the difference.
+    pub p: f64,
+    /// After Holm.
+    pub adjusted_p: f64,
+}
+
+/// The result for all contrasts of an experiment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Judgement {
+    /// What was found.
+    pub finding: Finding,
+    /// One result for each contrast, in their order.
+    pub contrasts: Vec<Contrast>,
+    /// The smallest p value after Holm.
+    pub worst_p: f64,
+    /// The interval that reaches farthest from 0.
+    pub interval: [f64; 2],
+    /// Chance of failing though nothing is wrong.
+    pub false_alarm: f64,
+    /// Chance of missing a difference of the size that was observed.
+    pub miss: f64,
+}
+
+/// Compares batches with their targets.
+pub fn judge(targets: &[Target], batches: &Batches, criterion: &Criterion) -> Judgement {
+    let freedom = batches.freedom();
+    let critical = student::quantile(0.5 * (1.0 - criterion.confidence), freedom);
+    let mut contrasts: Vec<Contrast> = targets
+        .iter()
+        .enumerate()
+        .map(|(k, target)| contrast(target, batches.summary(k), critical, freedom))
+        .collect();
+    let p: Vec<f64> = contrasts.iter().map(|c| c.p).collect();
+    for (contrast, adjusted) in contrasts.iter_mut().zip(holm(&p)) {
+        contrast.adjusted_p = adjusted;
+    }
+    let worst_p = contrasts.iter().map(|c| c.adjusted_p).fold(1.0, f64::min);
+    let within = |c: &Contrast| c.interval.iter().all(|end| end.abs() <= criterion.margin);
+    let finding = if worst_p <= criterion.level {
+        Finding::Different
+    } else if !contrasts.is_empty() && contrasts.iter().all(within) {
+        Finding::Equivalent
+    } else {
+        Finding::Unresolved
+    };
+    let reach = |c: &Contrast| c.interval[0].abs().max(c.interval[1].abs());
+    let interval = contrasts
+        .iter()
+        .max_by(|a, b| reach(a).total_cmp(&reach(b)))
+        .map_or([0.0, 0.0], |c| c.interval);
+    let outside: f64 =
+        contrasts.iter().map(|c| leaves_margin(c, criterion, critical, freedom)).sum();
+    Judgement {
+        finding,
+        worst_p,
+        interval,
+        false_alarm: (criterion.level + outside).min(1.0),
+        miss: miss(&contrasts, criterion, freedom),
+        contrasts,
+    }
+}
+
+fn contrast(target: &Target, summary: Summary, critical: f64, freedom: f64) -> Contrast {
+    let Summary { mean, standard_error } = summary;
+    let Target { expected, error, .. } = *target;
+    let difference = mean - expected;
+    let excess = (difference.abs() - error).max(0.0);
+    let p = match (excess, standard_error) {
+        (e, _) if e.is_nan() => 0.0,
+        (0.0, _) => 1.0,
+        (_, 0.0) => 0.0,
+        _ => student::two_sided(excess / standard_error, freedom),
+    };
+    let half_width = critical * standard_error + error;
+    let ends =
+        [(difference - half_width) / expected.abs(), (difference + half_width) / expected.abs()];
+    Contrast {
+        name: target.name.clone(),
+        expected,
+        expected_error: error,
+        mean,
+        standard_error,
+        z: if difference == 0.0 { 0.0 } else { difference / standard_error },
+        interval: ends,
+        p,
+        adjusted_p: p,
+    }
+}
+
+/// The chance that the interval of an unbiased estimate with this noise leaves the margin.
+fn leaves_margin(contrast: &Contrast, criterion: &Criterion, critical: f64, freedom: f64) -> f64 {
+    let room = criterion.margin * contrast.expected.abs()
+        - contrast.expected_error
+        - critical * contrast.standard_error;
+    if room <= 0.0 {
+        return 1.0;
+    }
+    if contrast.standard_error == 0.0 {
+        return 0.0;
+    }
+    student::two_sided(room / contrast.standard_error, freedom)
+}
+
+/// The chance that the most significant contrast, were its difference as observed, is not seen.
+fn miss(contrasts: &[Contrast], criterion: &Criterion, freedom: f64) -> f64 {
+    let level = criterion.level / contrasts.len().max(1) as f64;
+    let critical = student::quantile(0.5 * level, freedom);
+    let strongest = contrasts.iter().map(|c| {
+        let excess = ((c.mean - c.expected).abs() - c.expected_error).max(0.0);
+        if excess == 0.0 { 0.0 } else { excess / c.standard_error }
+    });
+    student::upper_tail(strongest.fold(0.0, f64::max) - critical, freedom)
+}
+
+#[cfg(test)]
+#[path = "agreement_tests.rs"]
+mod tests;

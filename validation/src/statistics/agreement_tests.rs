@@ -1,0 +1,68 @@
+//! Calibration on simulated data: how often does the verdict fail without and with a difference?
+
+use super::*;
+use tpb_optics::Stream;
+
+/// Skewed unit-mean batches: means of `n` exponential variates.
+fn batch(rng: &mut Stream, n: usize) -> f64 {
+    (0..n).map(|_| -(-rng.uniform()).ln_1p()).sum::<f64>() / n as f64
+}
+
+fn simulate(seed: u64, contrasts: usize, truth: f64, n: usize) -> (Vec<Target>, Batches) {
+    let mut rng = Stream::new(seed, 0, 0);
+    let mut batches = Batches::new();
+    for _ in 0..32 {
+        batches.push((0..contrasts).map(|_| truth * batch(&mut rng, n)).collect());
+    }
+    let target = |k| Target { name: format!("contrast {k}"), expected: 1.0, error: 0.0 };
+    ((0..contrasts).map(target).collect(), batches)
+}
+
+#[test]
+fn under_the_null_the_family_is_rejected_as_often_as_its_level_says() {
+    // 4000 families of 8 contrasts at level 2 %: 80 expected, sd 8.9 (Holm is slightly
+    // conservative). False alarm of this test at ±6 sd: below 1e-7; the seeds are fixed.
+    let criterion = Criterion { level: 0.02, ..Criterion::UNBIASED };
+    let rejected = (0..4000)
+        .filter(|&seed| {
+            let (targets, batches) = simulate(seed, 8, 1.0, 100);
+            judge(&targets, &batches, &criterion).finding == Finding::Different
+        })
+        .count();
+    assert!((30..=133).contains(&rejected), "{rejected} of 4000");
+}
+
+#[test]
+fn a_difference_above_the_margin_is_seen_and_little_noise_within_it_is_equivalent() {
+    let criterion = Criterion::UNBIASED;
+    // Relative standard error 1/√(32·50000) = 0.08 %.
+    let (targets, batches) = simulate(1, 4, 1.0, 50_000);
+    let judgement = judge(&targets, &batches, &criterion);
+    assert_eq!(judgement.finding, Finding::Equivalent, "{judgement:?}");
+    let (targets, batches) = simulate(1, 4, 1.01, 50_000);
+    let judgement = judge(&targets, &batches, &criterion);
+    assert_eq!(judgement.finding, Finding::Different, "{judgement:?}");
+    assert!(judgement.miss < 0.2);
+}
+
+#[test]
+fn noise_does_not_pass() {
+    let (targets, batches) = simulate(3, 4, 1.0, 100);
+    let judgement = judge(&targets, &batches, &Criterion::UNBIASED);
+    assert_eq!(judgement.finding, Finding::Unresolved);
+    assert!(judgement.false_alarm > 0.5);
+    assert_eq!(judge(&[], &Batches::new(), &Criterion::UNBIASED).finding, Finding::Unresolved);
+}
+
+#[test]
+fn values_without_noise_are_compared_to_the_error_of_the_target() {
+    let mut batches = Batches::new();
+    for _ in 0..32 {
+        batches.push(vec![1.0 + 1e-9]);
+    }
+    let target = |error| [Target { name: "exact".into(), expected: 1.0, error }];
+    let judged = |error| judge(&target(error), &batches, &Criterion::UNBIASED);
+    assert_eq!(judged(1e-8).finding, Finding::Equivalent);
+    assert_eq!(judged(1e-8).false_alarm, Criterion::UNBIASED.level);
+    assert_eq!(judged(1e-10).finding, Finding::Different, "no floor hides it");
+}

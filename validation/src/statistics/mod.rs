@@ -1,0 +1,32 @@
+//! The statistics of comparison: what may be concluded from noisy estimates, and how often it is
+//! concluded wrongly.
+//!
+//! * [`batches`]: independent batches of a few linear contrasts, their means and standard errors.
+//!   A beam fills many cells, so cells are correlated and never serve as samples themselves.
+//! * [`student`]: tail probabilities and quantiles of Student's t, far into the tails.
+//! * [`multiple`]: Holm and Šidák corrections for many simultaneous tests.
+//! * [`agreement`]: the verdict on a set of contrasts with known expectations: *different*
+//!   (significant after Holm), *equivalent* (every confidence interval within the margin), or
+//!   *unresolved* (too noisy to tell, which is a failure for lack of power, never a pass).
+//! * [`chi_square`]: histograms against densities.
+//! * [`ratio`] and [`bootstrap`]: how many times better one method is than another.
+//! * [`split`]: the error of a cube, split into variance and squared bias without bias.
+//!
+//! No variance is ever raised to a floor. Every verdict carries its false-alarm probability: how
+//! likely it is to fail when nothing is wrong; a suite adds them up.
+
+pub mod agreement;
+pub mod batches;
+pub mod bootstrap;
+pub mod chi_square;
+pub mod multiple;
+pub mod ratio;
+pub mod split;
+pub mod student;
+
+pub use agreement::{Contrast, Criterion, Finding, Judgement, Target, judge};
+pub use batches::Batches;
+pub use chi_square::{ChiSquare, chi_square};
+pub use multiple::{holm, sidak};
+pub use ratio::{RatioInterval, ratio_of_means};
+pub use split::{Gram, ReferenceNoise, Split};

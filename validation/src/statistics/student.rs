@@ -1,0 +1,81 @@
+//! Student's t: tail probabilities and quantiles, also where they are 1e-12 and smaller.
+//!
+//! The tail is the regularised incomplete beta function, P(T > t) = I_x(ν/2, 1/2)/2 with
+//! x = ν/(ν + t²), which keeps its relative accuracy however small it is (`statrs`). Degrees of
+//! freedom need not be whole (Welch & Satterthwaite).
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// P(T > t) with `freedom` > 0 degrees of freedom.
+pub fn upper_tail(t: f64, freedom: f64) -> f64 {
+    if t.is_nan() {
+        return 1.0;
+    }
+    if t == f64::INFINITY {
+        return 0.0;
+    }
+    if t == f64::NEG_INFINITY {
+        return 1.0;
+    }
+    StudentsT::new(0.0, 1.0, freedom).map_or(1.0, |student| student.sf(t))
+}
+
+/// P(|T| > |t|).
+pub fn two_sided(t: f64, freedom: f64) -> f64 {
+    (2.0 * upper_tail(t.abs(), freedom)).min(1.0)
+}
+
+/// The t that is exceeded with probability `tail`, 0 < `tail` < 1.
+pub fn quantile(tail: f64, freedom: f64) -> f64 {
+    if tail > 0.5 {
+        return -quantile(1.0 - tail, freedom);
+    }
+    let mut high = 1.0;
+    while upper_tail(high, freedom) > tail && high < 1e150 {
+        high *= 2.0;
+    }
+    let mut low = 0.0;
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if upper_tail(middle, freedom) > tail {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn one_degree_of_freedom_is_cauchy_far_into_the_tail() {
+        // P(T > t) = atan(1/t)/π.
+        for t in [0.1, 1.0, 31.8, 1e4, 1e8] {
+            let exact = (1.0_f64 / t).atan() / PI;
+            assert!((upper_tail(t, 1.0) / exact - 1.0).abs() < 1e-9, "t = {t}");
+        }
+    }
+
+    #[test]
+    fn quantiles_are_those_of_the_printed_tables_and_invert_the_tail() {
+        // Abramowitz & Stegun, table 26.10.
+        assert!((quantile(0.025, 10.0) - 2.228).abs() < 5e-4);
+        assert!((quantile(0.005, 30.0) - 2.750).abs() < 5e-4);
+        assert!((quantile(0.975, 10.0) + 2.228).abs() < 5e-4);
+        for tail in [0.3, 1e-3, 1e-9, 1e-14] {
+            let t = quantile(tail, 31.0);
+            assert!((upper_tail(t, 31.0) / tail - 1.0).abs() < 1e-6, "{tail}");
+        }
+    }
+
+    #[test]
+    fn limits_are_no_nan() {
+        assert_eq!(two_sided(f64::INFINITY, 31.0), 0.0);
+        assert_eq!(two_sided(0.0, 31.0), 1.0);
+        assert_eq!(two_sided(f64::NAN, 31.0), 1.0);
+    }
+}

@@ -1,0 +1,142 @@
+//! `cargo xtask validate` and `cargo xtask reference-render`: parse, call `tpb-validation`, print.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+use tpb_validation::experiment::{Context, Effort, Experiment};
+use tpb_validation::reference_cube::ReferenceCube;
+use tpb_validation::{registry, report, scenes, suite, with_threads};
+use xshell::{Shell, cmd};
+
+use crate::workspace::{Outcome, root, say};
+
+/// Examples below the options.
+const EXAMPLES: &str = "Examples:
+  cargo xtask validate                          everything, about 4 minutes on 2 cores
+  cargo xtask validate --filter 'samplers/*'    some experiments
+  cargo xtask validate --list                   the plan alone
+
+Exit codes: 0 passed, 1 an experiment failed, 2 usage or files.
+A failing experiment leaves its contrasts and everything it found under --out and prints the
+command that repeats it.";
+
+/// Options of `cargo xtask validate`.
+#[derive(Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct ValidateArgs {
+    /// At most 4 minutes on 2 cores (the default)
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
+    /// More batches, longer equal-time runs, more scenes: tens of minutes
+    #[arg(long)]
+    full: bool,
+    /// Only experiments whose name matches (`*`, `?`; plain text: contains it)
+    #[arg(long, value_name = "GLOB")]
+    filter: Option<String>,
+    /// Also write all results as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Print the plan and stop
+    #[arg(long)]
+    list: bool,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads [default: all]
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Where failing experiments leave their tables [default: target/validation]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Options of `cargo xtask reference-render`.
+#[derive(Args)]
+pub(crate) struct ReferenceRenderArgs {
+    /// Name of a shipped scene
+    #[arg(long, default_value = "cornell-blocks")]
+    scene: String,
+    /// Wall time [s]
+    #[arg(long, value_name = "SECONDS", default_value_t = 600.0)]
+    time: f64,
+    /// Seed; equal-time runs use others
+    #[arg(long, default_value_t = 20_240_229)]
+    seed: u64,
+    /// Threads [default: all]
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Output file [default: the one that ships with the scene]
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// Runs the experiments; true if all passed.
+pub(crate) fn run(args: &ValidateArgs) -> Outcome {
+    let effort = if args.full { Effort::Full } else { Effort::Quick };
+    let out = args.out.clone().unwrap_or_else(|| root().join("target/validation"));
+    let context = Context::new(effort, args.seed, out);
+    let chosen: Vec<Box<dyn Experiment>> = registry::experiments(effort)
+        .into_iter()
+        .filter(|e| args.filter.as_ref().is_none_or(|glob| suite::matches(glob, &e.name())))
+        .collect();
+    if chosen.is_empty() {
+        return Err("no experiment matches the filter; --list shows all".into());
+    }
+    say(&format!("plan: {} experiments", chosen.len()));
+    report::plan(&chosen).iter().for_each(|line| say(line));
+    if args.list {
+        return Ok(true);
+    }
+    say("");
+    let width = report::width(chosen.iter().map(|e| e.name()));
+    let repeat = |name: &str| {
+        let full = if args.full { " --full" } else { "" };
+        format!("cargo xtask validate{full} --seed {} --filter '{name}'", args.seed)
+    };
+    let result = with_threads(args.threads, || {
+        suite::run_suite(&chosen, &context, repeat, |record| {
+            say(&report::line(record, width));
+            report::remarks(record).iter().for_each(|line| say(line));
+        })
+    })?;
+    if let Some(path) = &args.json {
+        suite::write_json(&result, path)?;
+    }
+    say("");
+    report::summary(&result).iter().for_each(|line| say(line));
+    Ok(result.passed())
+}
+
+/// Renders and writes a reference cube.
+pub(crate) fn reference_render(args: &ReferenceRenderArgs) -> Outcome {
+    let context = Context::new(Effort::Full, args.seed, PathBuf::new());
+    let time = Duration::try_from_secs_f64(args.time)?;
+    let loaded = scenes::shipped(&context.scene_path(&args.scene))?;
+    let out = args.out.clone().unwrap_or_else(|| context.reference_path(&args.scene));
+    say(&format!("rendering the reference of {} for {} s", args.scene, args.time));
+    let made =
+        with_threads(args.threads, || ReferenceCube::make(&loaded, time, args.seed, &commit()))??;
+    made.write(&out)?;
+    let noise = made.noise(|pixel| made.mask[pixel]);
+    say(&format!(
+        "wrote {}: {} passes, {:.3e} camera paths, {:.0} CPU s, own NMSE {:.2e}, {} pixels judged",
+        out.display(),
+        made.provenance.passes,
+        made.provenance.camera_paths as f64,
+        made.provenance.cpu_seconds.unwrap_or(f64::NAN),
+        noise.variance / noise.signal(),
+        made.mask.iter().filter(|&&judged| judged).count()
+    ));
+    Ok(true)
+}
+
+/// The commit of the sources, with a mark if they differ from it.
+fn commit() -> String {
+    let described = || -> Result<String, xshell::Error> {
+        let sh = Shell::new()?;
+        sh.change_dir(root());
+        cmd!(sh, "git describe --always --dirty --abbrev=12").quiet().ignore_stderr().read()
+    };
+    described().unwrap_or_else(|_| "unknown".into())
+}
