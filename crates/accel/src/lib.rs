@@ -104,7 +104,8 @@ impl Bvh {
                 ..BvhBuildParams::fastest_build()
             },
             Quality::FastQuery => {
-                BvhBuildParams { max_prims_per_leaf: 4, ..BvhBuildParams::slow_build() }
+                // A box costs less than a primitive in f64: no leaf holds more than one.
+                BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::slow_build() }
             }
         };
         let nodes = obvhs::bvh2::builder::build_bvh2(&scaled, params, &mut Duration::default());
