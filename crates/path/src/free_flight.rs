@@ -72,7 +72,8 @@ impl<'a, const C: usize> FreeFlight<'a, C> {
             return Outcome::Survival { weight: self.transmittance() };
         }
         let channel = choose_channel(self.mixture, rng);
-        let mut depth = -(-rng.uniform()).ln_1p();
+        // 1 − u is exact for u a multiple of 2⁻⁵³, and never 0.
+        let mut depth = -(1.0 - rng.uniform()).ln();
         for part in self.parts().filter(|part| part.coefficients.scatters()) {
             let sigma_t = part.coefficients.sigma_t[channel];
             if sigma_t == 0.0 {

@@ -11,7 +11,6 @@ use super::worlds::{FOG, ONE_RAY, camera, depths, lamp, medium, plate, tracer};
 
 #[test]
 fn depths_add_up() {
-    // False-alarm probability 1e-6.
     let scene = cornell::blocks(4, 8);
     let whole = estimate(&tracer::<1>(&scene, depths(1, 5), 300), 51, 16, image_and_blocks(4));
     let mut sum = vec![0.0; whole.means.len()];
@@ -25,7 +24,8 @@ fn depths_add_up() {
             squares[i] += part.errors[i] * part.errors[i];
         }
     }
-    // Six means of 16 batches each: close to normal; 6 standard errors, 5 contrasts.
+    // Six means of 16 batches each, nearly normal: 6 standard errors for each of 5 contrasts have a
+    // false-alarm probability below 1e-6.
     for (i, mean) in whole.means.iter().enumerate() {
         let error = squares[i].sqrt().hypot(whole.errors[i]);
         assert!((mean - sum[i]).abs() <= 6.0 * error, "{i}: {mean} {} ± {error}", sum[i]);
