@@ -9,7 +9,7 @@ use std::fmt;
 use serde::Serialize;
 use tpb_optics::Rgb;
 
-use crate::{Bsdf, EmitterKind, IntegratorSpec, PixelFormat, Scene, TimeSpec};
+use crate::{Bsdf, EmitterKind, IntegratorSpec, MethodName, PixelFormat, Scene, TimeSpec};
 
 /// What a render of a scene needs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -83,6 +83,9 @@ pub struct Item {
     pub part: String,
     /// Why it is needed or not.
     pub reason: String,
+    /// The only method that it concerns; `None` concerns all.
+    #[serde(skip)]
+    pub only: Option<MethodName>,
 }
 
 impl Plan {
@@ -121,6 +124,15 @@ impl Plan {
         };
         plan.explain(scene, integrator);
         plan
+    }
+
+    /// The same with the lines that concern this method.
+    #[must_use]
+    pub fn of_method(mut self, method: MethodName) -> Self {
+        let concerns = |item: &Item| item.only.is_none_or(|only| only == method);
+        self.needs.retain(concerns);
+        self.left_out.retain(concerns);
+        self
     }
 
     fn explain(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
@@ -230,11 +242,11 @@ impl Plan {
     }
 
     fn need(&mut self, part: &str, reason: String) {
-        self.needs.push(Item { part: part.to_owned(), reason });
+        self.needs.push(item(part, reason));
     }
 
     fn omit(&mut self, part: &str, reason: String) {
-        self.left_out.push(Item { part: part.to_owned(), reason });
+        self.left_out.push(item(part, reason));
     }
 }
 
@@ -242,12 +254,22 @@ impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (title, items) in [("needs", &self.needs), ("leaves out", &self.left_out)] {
             writeln!(f, "{title}:")?;
-            for Item { part, reason } in items {
+            for Item { part, reason, .. } in items {
                 writeln!(f, "  {part:<30} {reason}")?;
             }
         }
         Ok(())
     }
+}
+
+/// A line of the plan; what it concerns is told by its part.
+fn item(part: &str, reason: String) -> Item {
+    let only = match part {
+        "photon beams" | "1D kernel" | "2D kernel" | "surface photons" => Some(MethodName::Beams),
+        _ if part.ends_with("in the path tracer") => Some(MethodName::Path),
+        _ => None,
+    };
+    Item { part: part.to_owned(), reason, only }
 }
 
 fn media(scene: &Scene) -> Media {
