@@ -16,9 +16,10 @@ use std::fs::File;
 use std::io::{self, BufReader, BufWriter};
 use std::path::Path;
 
-use npyz::npz::{NpzArchive, NpzWriter, file_name_from_array_name};
-use npyz::zip::{CompressionMethod, result::ZipError, write::FileOptions};
 use npyz::{AutoSerialize, Deserialize, NpyFile, NpyHeader, Order, WriterBuilder};
+use zip::result::ZipError;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::arrays::{Arrays, Quantity};
 use crate::{FilmError, atomic_write};
@@ -33,7 +34,7 @@ impl Arrays {
     /// [`FilmError::Io`].
     pub fn write_npz(&self, path: &Path) -> Result<(), FilmError> {
         atomic_write(path, |file| {
-            let mut npz = NpzWriter::new(file);
+            let mut npz = ZipWriter::new(file);
             let (height, width, channels) = (self.height, self.width, self.channels);
             let image = [height, width, channels];
             if self.bins > 0 {
@@ -53,7 +54,7 @@ impl Arrays {
                 put(&mut npz, "after", &image, &self.after)?;
             }
             put(&mut npz, "steady", &image, &self.steady)?;
-            npz.zip_writer().finish()?;
+            npz.finish()?;
             Ok(())
         })
     }
@@ -65,9 +66,9 @@ impl Arrays {
     /// else.
     pub fn read_npz(path: &Path) -> Result<Self, FilmError> {
         let file = File::open(path).map_err(|e| FilmError::io(path, e))?;
-        let broken = |e: io::Error| FilmError::format(path, e.to_string());
+        let broken = |e: ZipError| FilmError::format(path, e.to_string());
         let mut reader =
-            Reader { path, npz: NpzArchive::new(BufReader::new(file)).map_err(broken)? };
+            Reader { path, npz: ZipArchive::new(BufReader::new(file)).map_err(broken)? };
 
         let (shape, steady) = reader.required::<f64>("steady", None)?;
         let &[height, width, channels] = shape.as_slice() else {
@@ -110,23 +111,30 @@ impl Arrays {
 }
 
 fn put<T: AutoSerialize + Copy>(
-    npz: &mut NpzWriter<&mut BufWriter<&File>>,
+    npz: &mut ZipWriter<&mut BufWriter<&File>>,
     name: &str,
     shape: &[usize],
     values: &[T],
 ) -> io::Result<()> {
-    let options = FileOptions::default()
+    let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
         .large_file(size_of_val(values) >= LARGE_BYTES);
     let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
-    let mut member = npz.array(name, options)?.default_dtype().shape(&shape).begin_nd()?;
+    npz.start_file(member_name(name), options)?;
+    let mut member =
+        npyz::WriteOptions::new().default_dtype().shape(&shape).writer(npz).begin_nd()?;
     member.extend(values.iter().copied())?;
     member.finish()
 }
 
+/// The member of the archive that holds an array.
+fn member_name(array: &str) -> String {
+    format!("{array}.npy")
+}
+
 struct Reader<'a> {
     path: &'a Path,
-    npz: NpzArchive<BufReader<File>>,
+    npz: ZipArchive<BufReader<File>>,
 }
 
 /// Shape and values of one array.
@@ -140,7 +148,7 @@ impl Reader<'_> {
     ) -> Result<Option<Array<T>>, FilmError> {
         let path = self.path;
         let broken = |e: io::Error| FilmError::format(path, format!("`{name}`: {e}"));
-        let mut member = match self.npz.zip_archive().by_name(&file_name_from_array_name(name)) {
+        let mut member = match self.npz.by_name(&member_name(name)) {
             Ok(member) => member,
             Err(ZipError::FileNotFound) => return Ok(None),
             Err(error) => return Err(broken(error.into())),
