@@ -172,6 +172,11 @@ impl Report {
         report
     }
 
+    /// Whether nothing was kept out and the light ledger closes.
+    pub fn is_sound(&self) -> bool {
+        self.non_finite == 0 && self.ledger_closure.is_none_or(|c| c.abs() <= LEDGER_TOLERANCE)
+    }
+
     fn find_warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         if self.non_finite > 0 {
@@ -254,7 +259,8 @@ mod tests {
             assert!(warnings.contains(part), "{part} is missing in\n{warnings}");
         }
         let sound = report(Ledger::default(), 0, RenderOptions::default());
-        assert_eq!(sound.ledger_closure, None);
+        assert!(sound.is_sound() && sound.ledger_closure.is_none());
+        assert!(!report(leaking, 0, options).is_sound());
         assert_eq!(sound.find_warnings().len(), 1, "only the interruption");
         assert_eq!(sound.rates.camera_paths_per_second, 50.0, "setup does not count");
     }

@@ -1,0 +1,246 @@
+//! The command line.
+
+use std::num::{NonZeroU32, NonZeroU64, NonZeroUsize};
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use tpb_film::Pulse;
+
+use crate::values;
+
+/// Renders light in flight: transient photon beams and a transient path tracer.
+#[derive(Debug, Parser)]
+#[command(name = "tpb", version, max_term_width = 100)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene into a folder of arrays, pictures and a report
+    Render(Box<RenderArgs>),
+    /// Print what a render of a scene needs, and what it leaves out
+    Plan(Box<PlanArgs>),
+    /// Check a result and print what is in it
+    Info(InfoArgs),
+    /// Print the JSON schema of scene files
+    Schema,
+}
+
+/// `tpb render`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tpb render cornell-blocks.json --time 20s
+  tpb render cornell-blocks.json --method path --passes 16 --seed 7 -o results/path
+  tpb render cornell-blocks.json --set sensor.film.width=128 --pulse gaussian:30ps
+
+Ctrl-c ends the render after the pass and writes what is there; once more, it aborts.
+Exit codes: 0 done; 1 done, but the result is not sound; 2 bad usage, input or files.")]
+pub(crate) struct RenderArgs {
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+
+    /// Wall time to render for, preparation included: 500ms, 20s, 3m, 1h [default: 10s]
+    #[arg(long, value_name = "TIME", value_parser = values::duration, conflicts_with = "passes")]
+    pub(crate) time: Option<Duration>,
+
+    /// Number of passes to render instead; the arrays are then reproducible to the bit
+    #[arg(long, value_name = "N")]
+    pub(crate) passes: Option<NonZeroU64>,
+
+    /// Seed of all random numbers
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub(crate) seed: u64,
+
+    /// Threads to use; results do not depend on it [default: all of the machine's]
+    #[arg(long, value_name = "N", value_parser = values::threads)]
+    pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Result folder; replaces an earlier result, nothing else [default: SCENE-METHOD]
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Also write the variance of each cell's mean
+    #[arg(long)]
+    pub(crate) variance: bool,
+
+    /// Subtract the time from the eye to the first surface from arrival times
+    #[arg(long)]
+    pub(crate) unwarp: bool,
+
+    /// Pulse of the emitters: delta, gaussian:30ps (full width at half maximum), box:50ps
+    /// (duration), or continuous (switched on at time 0)
+    #[arg(long, value_name = "PULSE", default_value = "delta", value_parser = values::pulse)]
+    pub(crate) pulse: Pulse,
+
+    /// Write arrays and report only
+    #[arg(long)]
+    pub(crate) no_pictures: bool,
+
+    #[command(flatten)]
+    pub(crate) method: MethodArgs,
+}
+
+/// `tpb plan`.
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    #[command(flatten)]
+    pub(crate) job: JobArgs,
+
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    #[command(flatten)]
+    pub(crate) method: MethodArgs,
+}
+
+/// `tpb info`.
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    /// A result folder, or an npz file of arrays
+    pub(crate) result: PathBuf,
+}
+
+/// Scene and method.
+#[derive(Debug, Args)]
+pub(crate) struct JobArgs {
+    /// The scene file (JSON)
+    pub(crate) scene: PathBuf,
+
+    /// Rendering method [default: the scene's integrator, or beams]
+    #[arg(long)]
+    pub(crate) method: Option<MethodArg>,
+
+    /// Change a value of the scene: sensor.film.width=128
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub(crate) set: Vec<String>,
+
+    /// Deepest paths counted, -1 for all; 1 is light seen directly [default: the scene's]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = values::max_depth)]
+    pub(crate) max_depth: Option<values::MaxDepth>,
+
+    /// Shallowest paths counted [default: the scene's]
+    #[arg(long, value_name = "N")]
+    pub(crate) min_depth: Option<NonZeroU32>,
+
+    /// Depth from which Russian roulette may end a path [default: the scene's]
+    #[arg(long, value_name = "N")]
+    pub(crate) rr_depth: Option<NonZeroU32>,
+}
+
+/// Options that belong to one method.
+#[derive(Debug, Args)]
+pub(crate) struct MethodArgs {
+    #[command(flatten)]
+    pub(crate) beams: BeamArgs,
+
+    #[command(flatten)]
+    pub(crate) path: PathArgs,
+}
+
+/// Options of the photon beams; what is not given is chosen from scene and film.
+#[derive(Debug, Default, PartialEq, Args)]
+#[command(next_help_heading = "Options of beams (chosen from scene and film unless given)")]
+pub(crate) struct BeamArgs {
+    /// Blur kernel
+    #[arg(long)]
+    pub(crate) kernel: Option<KernelArg>,
+
+    /// Where beams end: with their medium, or at a sampled collision
+    #[arg(long, value_name = "LENGTH")]
+    pub(crate) beam_length: Option<BeamLengthArg>,
+
+    /// How the 2D kernel spreads energy over time
+    #[arg(long, value_name = "SPREAD")]
+    pub(crate) temporal: Option<TemporalArg>,
+
+    /// Radius of the kernel in the first pass, in metres
+    #[arg(long, value_name = "R")]
+    pub(crate) radius: Option<f64>,
+
+    /// Radius of the surface photons' disc in the first pass, in metres
+    #[arg(long, value_name = "R")]
+    pub(crate) surface_radius: Option<f64>,
+
+    /// How fast the kernel shrinks over the passes, from 0 (not at all) to below 0.5
+    #[arg(long, value_name = "E")]
+    pub(crate) radius_exponent: Option<f64>,
+
+    /// Photons emitted in a pass
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    pub(crate) photons: Option<u64>,
+
+    /// Camera rays per pixel and pass that gather beams
+    #[arg(long, value_name = "N")]
+    pub(crate) gather_samples: Option<u32>,
+
+    /// Camera rays per pixel and pass that end on a surface
+    #[arg(long, value_name = "N")]
+    pub(crate) surface_samples: Option<u32>,
+
+    /// Connections to light sources per camera ray
+    #[arg(long, value_name = "N")]
+    pub(crate) light_samples: Option<u32>,
+}
+
+/// Options of the path tracer.
+#[derive(Debug, Default, PartialEq, Args)]
+#[command(next_help_heading = "Options of path (chosen from the film unless given)")]
+pub(crate) struct PathArgs {
+    /// Camera paths per pixel and pass
+    #[arg(long, value_name = "N")]
+    pub(crate) samples_per_pass: Option<NonZeroU32>,
+}
+
+/// A rendering method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodArg {
+    /// Transient photon beams
+    Beams,
+    /// Transient path tracer, unbiased
+    Path,
+}
+
+/// A kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum KernelArg {
+    /// A segment across beam and ray; no spread in time
+    #[value(name = "1d")]
+    OneD,
+    /// A disc across the beam
+    #[value(name = "2d")]
+    TwoD,
+}
+
+/// Where beams end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum BeamLengthArg {
+    /// With their medium
+    Long,
+    /// At a sampled collision
+    Short,
+}
+
+/// How the 2D kernel spreads energy over time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TemporalArg {
+    /// As transmittance does
+    Exact,
+    /// Evenly
+    Even,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,146 @@
+//! What `render` and `plan` share: from the command line to a scene, its plan and a method.
+
+use std::num::NonZero;
+
+use tpb_beams::{BeamLength, BeamOptions, KernelChoice, PhotonBeams, Temporal};
+use tpb_path::{PathOptions, PathTracer};
+use tpb_render::Method;
+use tpb_scene::load::{self, LoadedScene, Override};
+use tpb_scene::{IntegratorSpec, MethodName, Plan};
+
+use crate::cli::{
+    BeamArgs, BeamLengthArg, JobArgs, KernelArg, MethodArg, MethodArgs, PathArgs, TemporalArg,
+};
+use crate::failure::Failure;
+
+/// A scene that is ready to be rendered.
+pub(crate) struct Job {
+    /// The scene and its effective text.
+    pub(crate) loaded: LoadedScene,
+    /// Depths, as the command line overrides the scene.
+    pub(crate) integrator: IntegratorSpec,
+    /// What the run needs.
+    pub(crate) plan: Plan,
+    /// The method and its own options.
+    pub(crate) method: MethodSpec,
+}
+
+/// A method with its options.
+#[derive(Clone, Debug)]
+pub(crate) enum MethodSpec {
+    /// Photon beams.
+    Beams(BeamOptions),
+    /// Path tracer.
+    Path(PathOptions),
+}
+
+impl Job {
+    /// Loads the scene and decides how to render it.
+    pub(crate) fn new(args: &JobArgs, own: &MethodArgs) -> Result<Self, Failure> {
+        let overrides: Vec<Override> =
+            args.set.iter().map(|text| Override::parse(text)).collect::<Result<_, _>>()?;
+        let loaded = load::load_scene(&args.scene, &overrides)?;
+        let integrator = integrator(args, &loaded.scene.integrator);
+        if let Some(max) = integrator.max_depth.filter(|&max| max < integrator.min_depth) {
+            let min = integrator.min_depth;
+            return Err(Failure::input(format!(
+                "the deepest paths ({max}) are less deep than the shallowest ({min}): none counts"
+            )));
+        }
+        let method = MethodSpec::new(args.method, own, &integrator)?;
+        let plan = Plan::new(&loaded.scene, &integrator).of_method(method.method());
+        Ok(Self { loaded, integrator, plan, method })
+    }
+
+    /// The method itself, prepared for this scene.
+    pub(crate) fn method<const C: usize>(&self) -> Result<Box<dyn Method<C> + '_>, Failure> {
+        let (scene, plan) = (&self.loaded.scene, &self.plan);
+        Ok(match &self.method {
+            MethodSpec::Path(options) => {
+                Box::new(PathTracer::<C>::new(scene, plan, self.integrator, options))
+            }
+            MethodSpec::Beams(options) => Box::new(
+                PhotonBeams::new(scene, plan, self.integrator, options)
+                    .map_err(|e| Failure::input(e.to_string()))?,
+            ),
+        })
+    }
+}
+
+impl MethodSpec {
+    /// The command line's method, else the scene's, else beams.
+    fn new(
+        asked: Option<MethodArg>,
+        own: &MethodArgs,
+        integrator: &IntegratorSpec,
+    ) -> Result<Self, Failure> {
+        let foreign = |name, used| {
+            let message = format!("options of {name} are given, but the method is {used}");
+            Failure::with_help(message, format!("leave them out, or add --method {name}"))
+        };
+        match (asked, integrator.method) {
+            (Some(MethodArg::Path), _) | (None, Some(MethodName::Path)) => {
+                if own.beams != BeamArgs::default() {
+                    return Err(foreign("beams", "path"));
+                }
+                let PathArgs { samples_per_pass } = own.path;
+                Ok(Self::Path(PathOptions { samples_per_pass }))
+            }
+            _ => {
+                if own.path != PathArgs::default() {
+                    return Err(foreign("path", "beams"));
+                }
+                Ok(Self::Beams(beam_options(&own.beams)))
+            }
+        }
+    }
+
+    fn method(&self) -> MethodName {
+        match self {
+            Self::Beams(_) => MethodName::Beams,
+            Self::Path(_) => MethodName::Path,
+        }
+    }
+
+    /// Its name on the command line.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Beams(_) => "beams",
+            Self::Path(_) => "path",
+        }
+    }
+}
+
+fn integrator(args: &JobArgs, scene: &IntegratorSpec) -> IntegratorSpec {
+    IntegratorSpec {
+        method: scene.method,
+        max_depth: args.max_depth.map_or(scene.max_depth, |depth| depth.0),
+        min_depth: args.min_depth.map_or(scene.min_depth, NonZero::get),
+        rr_depth: args.rr_depth.map_or(scene.rr_depth, NonZero::get),
+    }
+}
+
+fn beam_options(args: &BeamArgs) -> BeamOptions {
+    BeamOptions {
+        kernel: args.kernel.map(|kernel| match kernel {
+            KernelArg::OneD => KernelChoice::OneD,
+            KernelArg::TwoD => KernelChoice::TwoD,
+        }),
+        length: args.beam_length.map(|length| match length {
+            BeamLengthArg::Long => BeamLength::Long,
+            BeamLengthArg::Short => BeamLength::Short,
+        }),
+        temporal: args.temporal.map(|temporal| match temporal {
+            TemporalArg::Exact => Temporal::Exact,
+            TemporalArg::Even => Temporal::Even,
+        }),
+        radius: args.radius,
+        surface_radius: args.surface_radius,
+        radius_exponent: args.radius_exponent,
+        photons_per_pass: args.photons,
+        gather_samples: args.gather_samples,
+        surface_samples: args.surface_samples,
+        light_samples: args.light_samples,
+        ..BeamOptions::default()
+    }
+}
