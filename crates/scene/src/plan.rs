@@ -103,7 +103,10 @@ impl Plan {
         let specular = !(refracting.is_empty() && mirrors.is_empty());
         let beams = lit && scattering && integrator.reaches(2);
         let indirect = scattering || specular || !diffuse.is_empty();
-        let surface_photons = lit && !diffuse.is_empty() && indirect && integrator.reaches(3);
+        // Next-event estimation owns direct light, except a laser's.
+        let least_depth = if unconnectable(scene).is_empty() { 3 } else { 2 };
+        let surface_photons =
+            lit && !diffuse.is_empty() && indirect && integrator.reaches(least_depth);
         let connectable = scene.emitters.iter().any(|e| e.kind.can_be_connected());
         let mut plan = Self {
             transport: if is_chromatic(scene) { Transport::Rgb } else { Transport::Mono },
