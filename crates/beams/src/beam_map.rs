@@ -40,8 +40,8 @@ struct Piece {
 }
 
 /// The beams of one pass.
-pub struct BeamMap<const C: usize> {
-    beams: Vec<Beam<C>>,
+pub struct BeamMap<'a, const C: usize> {
+    beams: &'a [Beam<C>],
     pieces: Vec<Piece>,
     bvh: Bvh,
 }
@@ -63,9 +63,9 @@ impl Pairs {
     }
 }
 
-impl<const C: usize> BeamMap<C> {
+impl<'a, const C: usize> BeamMap<'a, C> {
     /// For kernels of `radius`, with pieces of about `piece_length` (may be infinite).
-    pub fn new(beams: Vec<Beam<C>>, radius: f64, piece_length: f64) -> Self {
+    pub fn new(beams: &'a [Beam<C>], radius: f64, piece_length: f64) -> Self {
         let mut pieces = Vec::with_capacity(beams.len());
         let mut boxes = Vec::with_capacity(beams.len());
         for (index, beam) in beams.iter().enumerate() {
@@ -80,11 +80,6 @@ impl<const C: usize> BeamMap<C> {
         }
         let bvh = Bvh::build(&boxes, Quality::FastBuild);
         Self { beams, pieces, bvh }
-    }
-
-    /// The beams.
-    pub fn beams(&self) -> &[Beam<C>] {
-        &self.beams
     }
 
     /// Shows `found` every beam of `medium` that the kernel joins to the ray, once.

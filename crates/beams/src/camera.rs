@@ -26,11 +26,12 @@ use tpb_optics::{Rgb, Spectrum, Stream, fresnel};
 use tpb_scene::{Bsdf, Flight, Hit, IntegratorSpec, Plan, Reflector, Scene, Vertex};
 
 use crate::Settings;
-use crate::beam::CameraRay;
+use crate::beam::{Beam, CameraRay};
 use crate::beam_map::{BeamMap, Pairs};
 use crate::kernel::RayBeamKernel;
 use crate::specular::Crossing;
 use crate::surface_map::SurfaceMap;
+use crate::tiles::Tiles;
 
 /// Largest probability to survive roulette, so that light that loses nothing ends too.
 const LARGEST_SURVIVAL: f64 = 0.95;
@@ -41,7 +42,9 @@ pub(crate) struct Camera<'a, const C: usize, K> {
     pub(crate) plan: &'a Plan,
     pub(crate) integrator: IntegratorSpec,
     pub(crate) settings: &'a Settings,
-    pub(crate) beams: &'a BeamMap<C>,
+    pub(crate) tiles: &'a Tiles<'a, C>,
+    /// For rays that mirrors or glass have turned; `None` in scenes without.
+    pub(crate) beams: Option<&'a BeamMap<'a, C>>,
     pub(crate) photons: &'a SurfaceMap<C>,
     pub(crate) kernel: K,
 }
@@ -50,6 +53,8 @@ pub(crate) struct Camera<'a, const C: usize, K> {
 struct Path<'s, 'f, const C: usize> {
     strip: &'s mut Strip<'f, C>,
     pixel: usize,
+    /// Column and row of the pixel.
+    at: (usize, usize),
     unwarp_opl: f64,
     vertex: Vertex,
     direction: DVec3,
@@ -67,12 +72,14 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
         let mut pairs = Pairs::default();
         for sample in 0..gather_samples.max(surface_samples) {
             let width = self.scene.film.width;
-            let (x, y) = ((pixel % width) as f64, (pixel / width) as f64);
-            let direction = self.scene.sensor.direction(x + rng.uniform(), y + rng.uniform());
+            let (x, y) = (pixel % width, pixel / width);
+            let (a, b) = (x as f64 + rng.uniform(), y as f64 + rng.uniform());
+            let direction = self.scene.sensor.direction(a, b);
             let share = |samples: u32| (sample < samples).then(|| 1.0 / f64::from(samples));
             let mut path = Path {
                 strip: &mut *strip,
                 pixel,
+                at: (x, y),
                 unwarp_opl: 0.0,
                 vertex: self.scene.eye(),
                 direction,
@@ -169,15 +176,20 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
                 phase: medium.phase,
                 eta: span.region.eta,
             };
-            let found = self.beams.query(self.kernel, id, &ray, |beam, meeting| {
-                if self.integrator.counts(beam.depth + path.events) {
+            let events = path.events;
+            let add = |beam: &Beam<C>, meeting: &K::Meeting| {
+                if self.integrator.counts(beam.depth + events) {
                     let contribution = self.kernel.contribution(meeting, beam, &ray);
                     let target = (&mut *path.strip, path.pixel, path.unwarp_opl);
                     contribution.deposit(temporal, share, target);
                 }
+            };
+            pairs.add(if events == 0 {
+                self.tiles.query(self.kernel, id, path.at, &ray, add)
+            } else {
+                let beams = self.beams.expect("scenes with specular shapes have a hierarchy");
+                beams.query(self.kernel, id, &ray, add)
             });
-            pairs.tested += found.tested;
-            pairs.accepted += found.accepted;
         }
     }
 

@@ -6,7 +6,7 @@
 //! 1. [`photons`]: photons leave the emitters, scatter in media and on surfaces, and leave a
 //!    [`beam::Beam`] in each span of a scattering medium and a [`beam::SurfacePhoton`] at each
 //!    diffuse surface.
-//! 2. [`beam_map`] and [`surface_map`] sort what they left.
+//! 2. [`tiles`], [`beam_map`] and [`surface_map`] sort what they left.
 //! 3. The camera's rays gather it: in media by a ray-beam kernel ([`kernel1d`], [`kernel2d`]), on
 //!    surfaces by a disc. Emission seen and direct light on surfaces are computed without blur.
 //!
@@ -16,10 +16,10 @@
 //! is counted once: by its last scattering event that is not specular it belongs to exactly one of
 //! emission, beams, direct light and surface photons.
 //!
-//! **Consistency.** Radii shrink with the pass as (i + 1)^(−`radius_exponent`). Ray and beam meet
-//! with probability ∝ R and add ∝ 1/R, so that variance after n passes is ∝ 1/(nR) and bias² is
-//! ∝ R⁴: R ∝ i^(−1/5) makes the mean square error fall as n^(−4/5). A bin is no blur: it is
-//! what the sensor measures.
+//! **Consistency.** Radii shrink with the pass ([`Settings::radii`]). Ray and beam meet with
+//! probability ∝ R and add ∝ 1/R, so that variance after n passes is ∝ 1/(nR) and bias² is ∝ R⁴:
+//! R ∝ i^(−1/5) makes the mean square error fall as n^(−4/5); for discs, ∝ 1/(nR²), it is
+//! R ∝ i^(−1/6) and n^(−2/3). A bin is no blur: it is what the sensor measures.
 //!
 //! **Time** is optical path length from the emitter to the eye: τ_b + τ_r + η (s_b + s_r), the
 //! source's equation 5 with the camera's leg.
@@ -35,10 +35,12 @@ pub mod kernel;
 pub mod kernel1d;
 pub mod kernel2d;
 mod method;
+mod mixture;
 mod options;
 pub mod photons;
 mod specular;
 pub mod surface_map;
+pub mod tiles;
 
 pub use method::PhotonBeams;
 pub use options::{BeamLength, BeamOptions, KernelChoice, OptionError, Settings, Temporal};

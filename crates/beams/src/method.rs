@@ -5,6 +5,7 @@ use tpb_optics::Stream;
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Plan, Scene};
 
+use crate::beam::Beam;
 use crate::beam_map::{BeamMap, Pairs};
 use crate::camera::Camera;
 use crate::kernel::RayBeamKernel;
@@ -12,6 +13,7 @@ use crate::kernel1d::Kernel1d;
 use crate::kernel2d::Kernel2d;
 use crate::photons::PhotonTracer;
 use crate::surface_map::SurfaceMap;
+use crate::tiles::Tiles;
 use crate::{BeamOptions, KernelChoice, OptionError, Settings, stream_item};
 
 /// The transient photon beams renderer of one scene.
@@ -42,17 +44,22 @@ impl<'a> PhotonBeams<'a> {
         &self.settings
     }
 
+    /// Sorts what photons left, and gathers it pixel by pixel.
     fn gather<const C: usize, K: RayBeamKernel>(
         &self,
         id: PassId,
         film: &mut TransientFilm<C>,
-        kernel: K,
-        beams: &BeamMap<C>,
+        (kernel, radius): (K, f64),
+        beams: &[Beam<C>],
         photons: &SurfaceMap<C>,
     ) -> Pairs {
         let Self { scene, plan, integrator, settings } = self;
         let integrator = *integrator;
-        let camera = Camera { scene, plan, integrator, settings, beams, photons, kernel };
+        let tiles = &Tiles::new(scene, beams, radius);
+        let turned = !(plan.refracting.is_empty() && plan.mirrors.is_empty());
+        let map = turned.then(|| BeamMap::new(beams, radius, settings.piece_radii * radius));
+        let beams = map.as_ref();
+        let camera = Camera { scene, plan, integrator, settings, tiles, beams, photons, kernel };
         let found = film.add_pass(|strip| {
             let mut pairs = Pairs::default();
             for pixel in strip.pixels() {
@@ -80,22 +87,30 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
 
     fn pass(&self, id: PassId, film: &mut TransientFilm<C>) -> PassReport {
         let Self { scene, plan, integrator, settings } = self;
-        let shrink = (id.index as f64 + 1.0).powf(-settings.radius_exponent);
-        let radius = settings.radius * shrink;
-        let count = if plan.beams || plan.surface_photons { settings.photons_per_pass } else { 0 };
+        let (radius, surface_radius) = settings.radii(id.index);
+        let Settings { photons_per_pass, beam_photons, .. } = *settings;
+        let count = match (plan.beams, plan.surface_photons) {
+            (_, true) => photons_per_pass,
+            (true, false) => beam_photons,
+            (false, false) => 0,
+        };
         let tracer = PhotonTracer { scene, plan, integrator: *integrator, length: settings.length };
-        let traced = tracer.trace::<C>(id, count);
-        let photons = SurfaceMap::new(&traced.surface, settings.surface_radius * shrink);
-        let beams = BeamMap::new(traced.beams, radius, settings.piece_radii * radius);
+        let traced = tracer.trace::<C>(id, count, beam_photons);
+        let photons = SurfaceMap::new(&traced.surface, surface_radius);
+        let beams = &traced.beams;
         let pairs = match settings.kernel {
-            KernelChoice::OneD => self.gather(id, film, Kernel1d { radius }, &beams, &photons),
-            KernelChoice::TwoD => self.gather(id, film, Kernel2d { radius }, &beams, &photons),
+            KernelChoice::OneD => {
+                self.gather(id, film, (Kernel1d { radius }, radius), beams, &photons)
+            }
+            KernelChoice::TwoD => {
+                self.gather(id, film, (Kernel2d { radius }, radius), beams, &photons)
+            }
         };
         let samples = settings.gather_samples.max(settings.surface_samples);
         let counts = Counts {
             camera_paths: film.layout().pixels() as u64 * u64::from(samples),
             photon_paths: count,
-            beams: beams.beams().len() as u64,
+            beams: beams.len() as u64,
             surface_photons: traced.surface.len() as u64,
             pairs_tested: pairs.tested,
             pairs_accepted: pairs.accepted,

@@ -51,10 +51,15 @@ pub struct BeamOptions {
     pub radius: Option<f64>,
     /// Radius of the surface photons' disc in the first pass \[m\].
     pub surface_radius: Option<f64>,
-    /// Radii of pass i (from 0) are multiplied by (i + 1)^(−`radius_exponent`).
+    /// The beams' radius of pass i (from 0) is multiplied by (1 + i/32)^(−`radius_exponent`);
+    /// by default 1/5.
     pub radius_exponent: Option<f64>,
+    /// Likewise the disc's; by default 1/6.
+    pub surface_radius_exponent: Option<f64>,
     /// Photons emitted in a pass.
     pub photons_per_pass: Option<u64>,
+    /// How many of them leave beams; all leave surface photons.
+    pub beam_photons: Option<u64>,
     /// Camera paths per pixel and pass that gather beams.
     pub gather_samples: Option<u32>,
     /// Camera paths per pixel and pass that end on a surface.
@@ -90,10 +95,14 @@ pub struct Settings {
     pub radius: f64,
     /// Radius of the surface photons' disc in the first pass \[m\].
     pub surface_radius: f64,
-    /// Radii of pass i (from 0) are multiplied by (i + 1)^(−`radius_exponent`).
+    /// The beams' radius of pass i (from 0) is multiplied by (1 + i/32)^(−`radius_exponent`).
     pub radius_exponent: f64,
+    /// Likewise the disc's.
+    pub surface_radius_exponent: f64,
     /// Photons emitted in a pass.
     pub photons_per_pass: u64,
+    /// How many of them leave beams; all leave surface photons.
+    pub beam_photons: u64,
     /// Camera paths per pixel and pass that gather beams.
     pub gather_samples: u32,
     /// Camera paths per pixel and pass that end on a surface.
@@ -104,6 +113,18 @@ pub struct Settings {
     pub piece_radii: f64,
 }
 
+/// Passes over which radii keep nearly their first value.
+const PASSES_BEFORE_SHRINKING: f64 = 32.0;
+/// Beams that a ray meets go as photons × radius, the radius as 1/edge: so many photons leave
+/// beams per pixel along the image's edge that the gather costs about as much as the tracing.
+const BEAM_PHOTONS_PER_PIXEL_EDGE: f64 = 128.0;
+/// Photons in a disc go as photons × radius²: so many per pixel.
+const PHOTONS_PER_PIXEL: u64 = 16;
+/// Passes below this cost more in overhead than in light.
+const FEWEST_PHOTONS: u64 = 4096;
+/// Memory: about 300 bytes per photon on surfaces, 600 in media.
+const MOST_PHOTONS: u64 = 1 << 18;
+
 impl Settings {
     /// Fills in the defaults.
     ///
@@ -112,6 +133,14 @@ impl Settings {
     pub fn new(scene: &Scene, plan: &Plan, options: &BeamOptions) -> Result<Self, OptionError> {
         let footprint = footprint(scene, plan);
         let pixels = scene.film.width * scene.film.height;
+        let few = (BEAM_PHOTONS_PER_PIXEL_EDGE * (pixels as f64).sqrt()) as u64;
+        let many = (PHOTONS_PER_PIXEL * pixels as u64).clamp(FEWEST_PHOTONS, MOST_PHOTONS);
+        let few = few.clamp(FEWEST_PHOTONS, MOST_PHOTONS);
+        let photons_per_pass = options
+            .photons_per_pass
+            .or(options.beam_photons)
+            .unwrap_or(if plan.surface_photons { many.max(few) } else { few });
+        let beam_photons = options.beam_photons.unwrap_or(few.min(photons_per_pass));
         let kernel = options.kernel.unwrap_or(match plan.kernel {
             Kernel::OneD => KernelChoice::OneD,
             Kernel::TwoD => KernelChoice::TwoD,
@@ -120,19 +149,30 @@ impl Settings {
             kernel,
             length: options.length.unwrap_or_default(),
             temporal: options.temporal.unwrap_or_default(),
-            radius: options.radius.unwrap_or(0.5 * footprint),
-            surface_radius: options.surface_radius.unwrap_or(footprint),
-            radius_exponent: options.radius_exponent.unwrap_or(0.0),
-            photons_per_pass: options
-                .photons_per_pass
-                .unwrap_or_else(|| (4 * pixels as u64).clamp(10_000, 1_000_000)),
-            gather_samples: options.gather_samples.unwrap_or(1),
-            surface_samples: options.surface_samples.unwrap_or(4),
-            light_samples: options.light_samples.unwrap_or(1),
+            radius: options.radius.unwrap_or(footprint),
+            surface_radius: options.surface_radius.unwrap_or(2.0 * footprint),
+            radius_exponent: options.radius_exponent.unwrap_or(0.2),
+            surface_radius_exponent: options.surface_radius_exponent.unwrap_or(1.0 / 6.0),
+            photons_per_pass,
+            beam_photons,
+            gather_samples: options.gather_samples.unwrap_or(2),
+            surface_samples: options.surface_samples.unwrap_or(8),
+            light_samples: options.light_samples.unwrap_or(4),
             piece_radii: options.piece_radii.unwrap_or(16.0),
         };
         settings.check()?;
         Ok(settings)
+    }
+
+    /// Radii of beams and discs in pass `index` \[m\].
+    ///
+    /// With variance ∝ 1/R for beams and 1/R² for discs, and bias ∝ R², the mean square error falls
+    /// fastest with exponents 1/5 and 1/6. The first passes keep the radius nearly: it is a pixel's
+    /// or two already, and shrinking from the very first pass would buy bias that noise hides.
+    pub fn radii(&self, index: u64) -> (f64, f64) {
+        let age = 1.0 + index as f64 / PASSES_BEFORE_SHRINKING;
+        let beams = self.radius * age.powf(-self.radius_exponent);
+        (beams, self.surface_radius * age.powf(-self.surface_radius_exponent))
     }
 
     fn check(&self) -> Result<(), OptionError> {
@@ -148,6 +188,7 @@ impl Settings {
         }
         let counts = [
             ("photons_per_pass", self.photons_per_pass),
+            ("beam_photons", self.beam_photons),
             ("gather_samples", u64::from(self.gather_samples)),
             ("surface_samples", u64::from(self.surface_samples)),
             ("light_samples", u64::from(self.light_samples)),
@@ -157,9 +198,18 @@ impl Settings {
                 return Err(OptionError { option, expected: "at least 1", found: 0.0 });
             }
         }
-        if !(0.0..0.5).contains(&self.radius_exponent) {
-            let (option, found) = ("radius_exponent", self.radius_exponent);
-            return Err(OptionError { option, expected: "at least 0 and below 0.5", found });
+        if self.beam_photons > self.photons_per_pass {
+            let (option, found) = ("beam_photons", self.beam_photons as f64);
+            return Err(OptionError { option, expected: "at most photons_per_pass", found });
+        }
+        let exponents = [
+            ("radius_exponent", self.radius_exponent),
+            ("surface_radius_exponent", self.surface_radius_exponent),
+        ];
+        for (option, found) in exponents {
+            if !(0.0..0.5).contains(&found) {
+                return Err(OptionError { option, expected: "at least 0 and below 0.5", found });
+            }
         }
         Ok(())
     }

@@ -3,16 +3,10 @@
 //!
 //! A photon flies through null boundaries to the next surface. Every span of the flight that lies
 //! in a scattering medium leaves a beam. Then the free flight decides whether the photon collides
-//! on the way or reaches the surface. In colour one distance serves all channels: with channel
-//! probabilities p_c proportional to power, the power after it is
-//!
-//! ```text
-//! Φ_c f_c / Σ_j p_j f_j,   f_c = σ_t,c exp(−depth_c) at a collision, exp(−depth_c) at the surface,
-//! ```
-//!
-//! bounded by the sum of powers. A collision leaves the albedo's share, a diffuse surface its
-//! reflectance's; smooth glass reflects with the probability of the Fresnel reflectance. Fluxes do
-//! not scale with η² on refraction.
+//! on the way or reaches the surface. A coloured medium's distance is drawn from a
+//! mixture over channels, with bounded weights. A collision leaves the albedo's share, a diffuse
+//! surface its reflectance's; smooth glass reflects with the probability of the Fresnel
+//! reflectance. Fluxes do not scale with η² on refraction.
 //!
 //! **Depth.** After n scattering events (of any kind but null crossings) a beam or a surface photon
 //! adds paths of depth n + 2 (plus the camera's specular events). Roulette ends paths from
@@ -38,6 +32,7 @@ use tpb_scene::{
 };
 
 use crate::beam::{Attenuation, Beam, SurfacePhoton, visible_length};
+use crate::mixture::{relative_transmittance, weight};
 use crate::{BeamLength, stream_item};
 
 /// Photons per parallel task; the division does not depend on threads.
@@ -82,6 +77,25 @@ struct Photon<const C: usize> {
     emitted: f64,
     /// Whether next-event estimation can find its emitter.
     connectable: bool,
+    /// Power of its beams over its own, if it leaves any.
+    beam_scale: Option<f64>,
+}
+
+impl<const C: usize> Photon<C> {
+    /// Applies a one-sample weight; in one channel it is 1.
+    fn weigh(&mut self, factor: Spectrum<C>, ledger: &mut Ledger) {
+        if C == 1 {
+            return;
+        }
+        let before = self.power.luminance();
+        self.power = self.power * factor;
+        let after = self.power.luminance();
+        if after > before {
+            ledger.roulette_gained += after - before;
+        } else {
+            ledger.roulette_lost += before - after;
+        }
+    }
 }
 
 /// A free flight's end: where, and in which medium.
@@ -91,15 +105,20 @@ struct Collision {
 }
 
 impl PhotonTracer<'_> {
-    /// Traces `count` photons of a pass; what they leave is ordered by photon.
-    pub fn trace<const C: usize>(&self, id: PassId, count: u64) -> Photons<C> {
+    /// Traces `count` photons of a pass, the first `beam_photons` of which leave beams; what they
+    /// leave is ordered by photon. Photons are cheap on surfaces, where each is met by the pixels
+    /// around it only, and dear as beams, which cross the image.
+    pub fn trace<const C: usize>(&self, id: PassId, count: u64, beam_photons: u64) -> Photons<C> {
         let chunks: Vec<Photons<C>> = (0..count.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
                 let mut out = Photons::default();
                 for item in chunk * CHUNK..(chunk * CHUNK + CHUNK).min(count) {
                     let mut rng = Stream::new(id.seed, id.index, stream_item::photon(item));
-                    self.photon(1.0 / count as f64, &mut rng, &mut out);
+                    let share = 1.0 / count as f64;
+                    let leaves_beams = self.plan.beams && item < beam_photons;
+                    let scale = leaves_beams.then(|| count as f64 / beam_photons as f64);
+                    self.photon(share, scale, &mut rng, &mut out);
                 }
                 out
             })
@@ -115,8 +134,15 @@ impl PhotonTracer<'_> {
         all
     }
 
-    /// One photon that stands for `share` of the light.
-    fn photon<const C: usize>(&self, share: f64, rng: &mut Stream, out: &mut Photons<C>) {
+    /// One photon that stands for `share` of the light; its beams, if it leaves any, for
+    /// `beam_scale` times as much.
+    fn photon<const C: usize>(
+        &self,
+        share: f64,
+        beam_scale: Option<f64>,
+        rng: &mut Stream,
+        out: &mut Photons<C>,
+    ) {
         let Some(emission) = self.scene.emit::<C>(rng) else { return };
         let emitter = &self.scene.emitters[emission.emitter];
         let power = emission.power * share;
@@ -136,6 +162,7 @@ impl PhotonTracer<'_> {
             events: 0,
             emitted: power.max_channel(),
             connectable: emitter.kind.can_be_connected(),
+            beam_scale,
         };
         while self.step(&mut photon, rng, out) && self.survives(&mut photon, rng, &mut out.ledger) {
         }
@@ -151,9 +178,10 @@ impl PhotonTracer<'_> {
         let flight = self.scene.fly(&photon.vertex, photon.direction);
         let mixture = photon.power / photon.power.0.iter().sum::<f64>();
         let collision = self.free_flight(&flight, mixture, rng);
-        if self.plan.beams && self.integrator.reaches(photon.events + 2) {
+        if let (Some(scale), true) = (photon.beam_scale, self.integrator.reaches(photon.events + 2))
+        {
             let end = collision.as_ref().map_or(f64::INFINITY, |c| c.distance);
-            self.leave_beams(photon, &flight, mixture, end, &mut out.beams);
+            self.leave_beams(photon, photon.power * scale, &flight, (mixture, end), &mut out.beams);
         }
         match collision {
             Some(collision) => {
@@ -194,9 +222,9 @@ impl PhotonTracer<'_> {
     fn leave_beams<const C: usize>(
         &self,
         photon: &Photon<C>,
+        power: Spectrum<C>,
         flight: &Flight,
-        mixture: Spectrum<C>,
-        end: f64,
+        (mixture, end): (Spectrum<C>, f64),
         beams: &mut Vec<Beam<C>>,
     ) {
         for span in &flight.spans {
@@ -208,14 +236,13 @@ impl PhotonTracer<'_> {
             let depth = flight.depth::<C>(self.scene, span.start);
             let (span_end, power, attenuation) = match self.length {
                 BeamLength::Long => {
-                    let power = photon.power * medium::transmittance(depth);
-                    (span.end, power, Attenuation::Explicit)
+                    (span.end, power * medium::transmittance(depth), Attenuation::Explicit)
                 }
                 BeamLength::Short => {
                     // Both relative to the channel that reaches farthest.
                     let left = relative_transmittance(depth, mixture);
                     let attenuation = Attenuation::Sampled { mixture: mixture * left };
-                    (span.end.min(end), photon.power * left, attenuation)
+                    (span.end.min(end), power * left, attenuation)
                 }
             };
             let length = visible_length(coefficients, span_end - span.start);
@@ -248,7 +275,7 @@ impl PhotonTracer<'_> {
         let coefficients = medium.coefficients.channels::<C>();
         let depth = flight.depth::<C>(self.scene, collision.distance);
         let left = relative_transmittance(depth, mixture);
-        weigh(photon, left * coefficients.sigma_t, mixture, ledger);
+        photon.weigh(weight(left * coefficients.sigma_t, mixture), ledger);
         let albedo = Spectrum(std::array::from_fn(|c| {
             let sigma_t = coefficients.sigma_t[c];
             if sigma_t == 0.0 { 0.0 } else { coefficients.sigma_s[c] / sigma_t }
@@ -280,7 +307,7 @@ impl PhotonTracer<'_> {
         out: &mut Photons<C>,
     ) -> bool {
         let depth = flight.depth::<C>(self.scene, flight.length());
-        weigh(photon, relative_transmittance(depth, mixture), mixture, &mut out.ledger);
+        photon.weigh(weight(relative_transmittance(depth, mixture), mixture), &mut out.ledger);
         let Some(hit) = flight.hit else {
             out.ledger.escaped += photon.power.luminance();
             return false;
@@ -387,35 +414,5 @@ impl PhotonTracer<'_> {
         photon.power = photon.power / survival;
         ledger.roulette_gained += photon.power.luminance() - before;
         true
-    }
-}
-
-/// exp(−depth) relative to the least depth among the channels that are drawn at all.
-fn relative_transmittance<const C: usize>(depth: Spectrum<C>, mixture: Spectrum<C>) -> Spectrum<C> {
-    let drawn = (0..C).filter(|&c| mixture[c] > 0.0);
-    let least = drawn.map(|c| depth[c]).fold(f64::INFINITY, f64::min);
-    // Equal depths, infinite ones too, are no difference; channels without power stay without.
-    Spectrum(std::array::from_fn(|c| {
-        if depth[c] == least || mixture[c] == 0.0 { 1.0 } else { (least - depth[c]).exp() }
-    }))
-}
-
-/// The one-sample weight f_c/Σ_j p_j f_j on a photon's power.
-fn weigh<const C: usize>(
-    photon: &mut Photon<C>,
-    density: Spectrum<C>,
-    mixture: Spectrum<C>,
-    ledger: &mut Ledger,
-) {
-    if C == 1 {
-        return;
-    }
-    let before = photon.power.luminance();
-    photon.power = photon.power * density / (mixture * density).0.iter().sum::<f64>();
-    let after = photon.power.luminance();
-    if after > before {
-        ledger.roulette_gained += after - before;
-    } else {
-        ledger.roulette_lost += before - after;
     }
 }

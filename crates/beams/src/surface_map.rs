@@ -31,6 +31,8 @@ const LEAST_COSINE: f64 = 0.5;
 /// The surface photons of one pass, sorted into cells of twice the radius.
 pub struct SurfaceMap<const C: usize> {
     photons: Vec<SurfacePhoton<C>>,
+    /// Theirs, apart: most candidates lie beyond the radius, and nothing else of them is read.
+    positions: Vec<DVec3>,
     /// Bucket b holds photons `starts[b]..starts[b + 1]`.
     starts: Vec<u32>,
     radius: f64,
@@ -56,8 +58,9 @@ impl<const C: usize> SurfaceMap<C> {
             order[*slot as usize] = index as u32;
             *slot += 1;
         }
-        let photons = order.iter().map(|&index| photons[index as usize]).collect();
-        Self { photons, starts, radius }
+        let photons: Vec<_> = order.iter().map(|&index| photons[index as usize]).collect();
+        let positions = photons.iter().map(|photon| photon.position).collect();
+        Self { photons, positions, starts, radius }
     }
 
     /// Shows `found` every photon of the disc around `hit`, on the side of `normal`.
@@ -79,9 +82,13 @@ impl<const C: usize> SurfaceMap<C> {
             let cell = lowest + I64Vec3::new(corner & 1, (corner >> 1) & 1, corner >> 2);
             let bucket = bucket_of(cell, self.starts.len() - 1);
             let range = self.starts[bucket] as usize..self.starts[bucket + 1] as usize;
-            for photon in &self.photons[range] {
-                if (photon.position - hit.position).length_squared() < squared
-                    && cell_of(photon.position, self.radius) == cell
+            for index in range {
+                let position = self.positions[index];
+                if (position - hit.position).length_squared() >= squared {
+                    continue;
+                }
+                let photon = &self.photons[index];
+                if cell_of(position, self.radius) == cell
                     && photon.normal.dot(normal) > LEAST_COSINE
                     && same_surface.holds(photon.primitive)
                 {

@@ -94,6 +94,7 @@ fn single_scattering_in_fog_is_the_expected_blur() {
                 kernel: Some(kernel),
                 length: Some(length),
                 radius: Some(RADIUS),
+                radius_exponent: Some(0.0),
                 photons_per_pass: Some(5_000),
                 ..Default::default()
             };

@@ -1,4 +1,4 @@
-//! The hierarchy against brute force over all beams: the same set of pairs, each once.
+//! The hierarchy and the tiles against brute force over all beams: the same set of pairs, each once.
 
 use glam::DVec3;
 use tpb_beams::beam::{Attenuation, Beam, CameraRay};
@@ -6,8 +6,11 @@ use tpb_beams::beam_map::BeamMap;
 use tpb_beams::kernel::RayBeamKernel;
 use tpb_beams::kernel1d::Kernel1d;
 use tpb_beams::kernel2d::Kernel2d;
+use tpb_beams::tiles::Tiles;
 use tpb_optics::{Coefficients, Phase, Spectrum, Stream, warp};
-use tpb_scene::MediumId;
+use tpb_scene::{MediumId, Scene};
+
+use crate::scenes;
 
 fn direction(rng: &mut Stream) -> DVec3 {
     // Some along axes, where boxes are thin and inverse directions infinite.
@@ -68,7 +71,7 @@ fn check<K: RayBeamKernel>(kernel: K, radius: f64, scale: f64, pieces: f64, seed
     let mut rng = Stream::new(seed, 0, 0);
     let beams = beams(scale, 600, &mut rng);
     let rays = rays(scale, 400, &mut rng);
-    let map = BeamMap::new(beams.clone(), radius, pieces * radius);
+    let map = BeamMap::new(&beams, radius, pieces * radius);
     let mut pairs = 0;
     for ray in &rays {
         let mut found = Vec::new();
@@ -94,6 +97,61 @@ fn the_hierarchy_finds_exactly_the_pairs_of_brute_force() {
                 let one = check(Kernel1d { radius }, radius, scale, pieces, seed as u64);
                 let two = check(Kernel2d { radius }, radius, scale, pieces, seed as u64);
                 assert!(one > 50 && two >= one, "pairs to compare: {one}, {two}");
+            }
+        }
+    }
+}
+
+/// Rays from an eye amid the beams, over the whole image, and segments of them.
+fn check_tiles<K: RayBeamKernel>(kernel: K, radius: f64, scale: f64, fov: f64, seed: u64) -> usize {
+    let mut rng = Stream::new(seed, 1, 0);
+    let beams = beams(scale, 1500, &mut rng);
+    let (width, height) = (37, 22);
+    let eye = position(0.5 * scale, &mut rng);
+    let sensor = scenes::camera(eye, direction(&mut rng), fov, (width, height));
+    let light = scenes::point(DVec3::ZERO, tpb_optics::Rgb::ONE);
+    let film = scenes::film(width, height, 1.0, 1);
+    let parts = scenes::infinite(scenes::fog(1.0, 1.0, 0.0), light, sensor, film);
+    let scene = Scene::assemble(parts).expect("the scene is consistent");
+    let tiles = Tiles::new(&scene, &beams, radius);
+    let mut pairs = 0;
+    for index in 0..width * height {
+        let (x, y) = (index % width, index / width);
+        let (a, b) = (x as f64 + rng.uniform(), y as f64 + rng.uniform());
+        let omega = scene.sensor.direction(a, b);
+        let start = if index % 2 == 0 { 0.0 } else { 0.3 * scale * rng.uniform() };
+        let ray = CameraRay {
+            origin: eye + start * omega,
+            direction: omega,
+            length: if index % 3 == 0 { f64::INFINITY } else { scale * rng.uniform() },
+            opl: 0.0,
+            throughput: Spectrum([1.0]),
+            coefficients: Coefficients { sigma_s: Spectrum([1.0]), sigma_t: Spectrum([1.0]) },
+            phase: Phase::Isotropic,
+            eta: 1.0,
+        };
+        let mut found = Vec::new();
+        tiles.query(kernel, MediumId(1), (x, y), &ray, |beam, _| found.push(beam.opl as usize));
+        let all = beams.iter().enumerate();
+        let brute: Vec<usize> = all
+            .filter(|(_, b)| b.medium == MediumId(1) && kernel.evaluate(b, &ray).is_some())
+            .map(|(index, _)| index)
+            .collect();
+        assert_eq!(found, brute, "scale {scale}, field of view {fov}");
+        pairs += found.len();
+    }
+    pairs
+}
+
+#[test]
+fn the_tiles_find_exactly_the_pairs_of_brute_force() {
+    for (seed, scale) in [1e-3, 1.0, 1e3].into_iter().enumerate() {
+        for fov in [0.01, 40.0, 170.0] {
+            for relative in [0.002, 0.05, 2.0] {
+                let radius = relative * scale;
+                let one = check_tiles(Kernel1d { radius }, radius, scale, fov, seed as u64);
+                let two = check_tiles(Kernel2d { radius }, radius, scale, fov, seed as u64);
+                assert!(two >= one && (one > 0 || fov < 1.0), "pairs to compare: {one}, {two}");
             }
         }
     }

@@ -102,7 +102,7 @@ fn ledger_closes<const C: usize>(integrator: IntegratorSpec, length: BeamLength)
     let scene = everything(integrator);
     let plan = Plan::new(&scene, &integrator);
     let tracer = PhotonTracer { scene: &scene, plan: &plan, integrator, length };
-    let photons = tracer.trace::<C>(PassId { seed: 3, index: 1 }, 3000);
+    let photons = tracer.trace::<C>(PassId { seed: 3, index: 1 }, 3000, 2000);
     let ledger = photons.ledger;
     assert!(ledger.closure().abs() < 1e-9, "{ledger:?}");
     for part in [ledger.absorbed_in_media, ledger.absorbed_on_surfaces] {
@@ -132,7 +132,7 @@ fn light_that_leaves_an_open_box_is_booked_as_escaped() {
     let integrator = scene.integrator;
     let plan = Plan::new(&scene, &integrator);
     let tracer = PhotonTracer { scene: &scene, plan: &plan, integrator, length: BeamLength::Long };
-    let ledger = tracer.trace::<1>(PassId { seed: 3, index: 0 }, 3000).ledger;
+    let ledger = tracer.trace::<1>(PassId { seed: 3, index: 0 }, 3000, 3000).ledger;
     assert!(ledger.closure().abs() < 1e-9, "{ledger:?}");
     // A lamp of 0.16 m² and radiance 10 emits 1.6 π.
     assert!((ledger.emitted / (1.6 * std::f64::consts::PI) - 1.0).abs() < 1e-12, "{ledger:?}");
@@ -251,6 +251,75 @@ fn a_closed_diffuse_sphere_glows_with_radiance_one_per_order() {
     let expected = 1.0 - rho.powi(6);
     // Student's t with 15 degrees of freedom: beyond 5 standard errors with probability 1.6e-4.
     assert!((mean - expected).abs() < 5.0 * error && error < 0.01, "{mean} {expected} {error}");
+}
+
+/// A laser's spot on a diffuse floor: next-event estimation cannot connect to it, so unscattered
+/// photons must show it, at depth 2, with radiance ρ/π · Φ/(π a²) all over the spot.
+#[test]
+fn a_laser_lights_a_surface_directly() {
+    let (spot, power, rho) = (0.3, 2.0, 0.6);
+    let integrator = IntegratorSpec { max_depth: Some(2), ..Default::default() };
+    let kind = EmitterKind::Laser {
+        position: DVec3::new(0.0, 1.0, 0.0),
+        axis: -DVec3::Y,
+        radius: spot,
+        power: Rgb::splat(power),
+    };
+    let floor = scenes::rectangle([0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]);
+    let scene = Scene::assemble(SceneParts {
+        shapes: vec![scenes::shape("floor", vec![floor], scenes::diffuse(rho))],
+        media: vec![],
+        emitters: vec![EmitterPart { name: "laser".to_owned(), kind }],
+        background: None,
+        sensor: scenes::camera(DVec3::new(0.0, 3.0, 4.0), DVec3::new(0.0, -3.0, -4.0), 1.0, (4, 4)),
+        film: scenes::film(4, 4, 1.0, 10),
+        integrator,
+    })
+    .expect("the scene is consistent");
+    let options = BeamOptions {
+        surface_radius: Some(0.15),
+        photons_per_pass: Some(4000),
+        ..Default::default()
+    };
+    let (mean, error) = mean_of_batches(&scene, integrator, &options, 16);
+    let expected = rho * power / (std::f64::consts::PI * spot).powi(2);
+    // Beyond 5 standard errors of 16 batches: probability 1.6e-4.
+    assert!((mean - expected).abs() < 5.0 * error, "{mean} {expected} {error}");
+    assert!(error < 0.01 * expected, "{error}");
+}
+
+/// Walls that all glow with radiance 1, and a ball so small around the eye that no ray is trapped
+/// in it by total reflection: from inside glass every ray sees η², whatever it does at
+/// the boundary, and from outside 1.
+#[test]
+fn radiance_scales_with_eta_squared_in_a_furnace_with_glass() {
+    let glass = Bsdf::Dielectric(Dielectric {
+        interior_eta: 1.5,
+        exterior_eta: 1.0,
+        reflectance: Rgb::ONE,
+        transmittance: Rgb::ONE,
+    });
+    let ball = scenes::shape("ball", vec![scenes::sphere(DVec3::ZERO, 0.5, false)], glass);
+    let wall = scenes::sphere(DVec3::ZERO, 2.0, true);
+    let mut walls = scenes::shape("walls", vec![wall], scenes::diffuse(0.0));
+    walls.radiance = Some(Rgb::ONE);
+    for (eye, expected) in [(DVec3::new(0.1, 0.1, 0.2), 2.25), (DVec3::new(0.0, 0.0, -1.2), 1.0)] {
+        let integrator = IntegratorSpec { rr_depth: 1000, ..Default::default() };
+        let scene = Scene::assemble(SceneParts {
+            shapes: vec![ball.clone(), walls.clone()],
+            media: vec![],
+            emitters: vec![],
+            background: None,
+            sensor: scenes::camera(eye, DVec3::Z, 70.0, (8, 8)),
+            film: scenes::film(8, 8, 1.0, 10),
+            integrator,
+        })
+        .expect("the scene is consistent");
+        let (arrays, _) = render(&scene, integrator, &BeamOptions::default(), 1);
+        for value in arrays.steady {
+            assert!((value / expected - 1.0).abs() < 1e-12, "{value} {expected}");
+        }
+    }
 }
 
 /// Mean over the image and its standard error from independent passes.
