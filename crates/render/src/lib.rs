@@ -1,12 +1,12 @@
 //! Floor 2: the pass loop, written once for every method.
 //!
 //! * [`Method`]: what a rendering method is — one pure function per pass.
-//! * [`run`]: passes into a film, until a [`Budget`] is used up or a [`Control`] interrupts.
+//! * [`run()`]: passes into a film, until a [`Budget`] is used up or a [`Control`] interrupts.
 //! * [`RenderOptions`], [`FilmSetup`]: a render as data, and the film that scene, plan and options
 //!   ask for.
 //! * [`Report`]: what is written beside the arrays.
 //!
-//! A render is: start a [`Stopwatch`], prepare the method, make the film, [`run`] within
+//! A render is: start a [`Stopwatch`], prepare the method, make the film, [`run()`] within
 //! [`with_threads`], [`FilmSetup::develop`]. Replicates are runs with other seeds into other films.
 
 mod budget;
