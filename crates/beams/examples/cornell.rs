@@ -1,6 +1,6 @@
 //! Measures the method on cornell-blocks: where variance, bias and time come from.
 //!
-//! `cornell [passes=N] [width=64] [only=beams,photons,direct] [save=FILE] [reference=FILE] [OPTIONS as JSON]`
+//! `cornell [passes=N] [seed=N] [scene=FILE (square)] [width=64] [only=beams,photons,direct] [save=FILE] [reference=FILE] [OPTIONS as JSON]`
 //!
 //! Prints speed, and NMSE over the pixels away from the lamp: its variance from the spread of
 //! passes (times seconds: a figure that does not depend on the budget), and with a reference the
@@ -10,21 +10,24 @@
 #[path = "../tests/suite/scenes.rs"]
 mod scenes;
 
+use std::path::Path;
 use std::time::Instant;
 
 use tpb_beams::{BeamOptions, PhotonBeams};
 use tpb_film::{FilmOptions, Layout, TimeAxis, TransientFilm};
 use tpb_render::{Method, PassId, PassReport};
+use tpb_scene::load::load_scene;
 use tpb_scene::{Plan, Scene};
 
 fn main() {
     let (mut passes, mut width, mut only) = (16, 64, None);
     let (mut save, mut reference, mut options) = (None, None, BeamOptions::default());
-    let mut seed = 1;
+    let (mut seed, mut file) = (1, None);
     for argument in std::env::args().skip(1) {
         match argument.split_once('=') {
             Some(("passes", n)) => passes = n.parse().expect("a number of passes"),
             Some(("seed", n)) => seed = n.parse().expect("a seed"),
+            Some(("scene", name)) => file = Some(name.to_owned()),
             Some(("width", n)) => width = n.parse().expect("a number of pixels"),
             Some(("only", parts)) => only = Some(parts.to_owned()),
             Some(("save", file)) => save = Some(file.to_owned()),
@@ -32,7 +35,11 @@ fn main() {
             _ => options = serde_json::from_str(&argument).expect("options as JSON"),
         }
     }
-    let scene = scenes::cornell_blocks(width);
+    let scene = match &file {
+        Some(file) => load_scene(Path::new(file), &[]).expect("a scene file").scene,
+        None => scenes::cornell_blocks(width),
+    };
+    width = scene.film.width;
     let mut plan = Plan::new(&scene, &scene.integrator);
     if let Some(parts) = only {
         plan.beams = parts.contains("beams");

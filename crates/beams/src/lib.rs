@@ -37,6 +37,7 @@ pub mod kernel2d;
 mod method;
 mod mixture;
 mod options;
+mod photon;
 pub mod photons;
 mod specular;
 pub mod surface_map;

@@ -33,13 +33,11 @@ use tpb_scene::{
 
 use crate::beam::{Attenuation, Beam, SurfacePhoton, visible_length};
 use crate::mixture::{relative_transmittance, weight};
+use crate::photon::Photon;
 use crate::{BeamLength, stream_item};
 
 /// Photons per parallel task; the division does not depend on threads.
 const CHUNK: u64 = 512;
-
-/// Largest probability to survive roulette, so that light that loses nothing ends too.
-const LARGEST_SURVIVAL: f64 = 0.95;
 
 /// All that one pass's photons left.
 #[derive(Clone, Debug, Default)]
@@ -63,39 +61,6 @@ pub struct PhotonTracer<'a> {
     pub integrator: IntegratorSpec,
     /// Where beams end.
     pub length: BeamLength,
-}
-
-/// A photon under way.
-struct Photon<const C: usize> {
-    vertex: Vertex,
-    direction: DVec3,
-    power: Spectrum<C>,
-    opl: f64,
-    /// Scattering events so far.
-    events: u32,
-    /// Largest channel when emitted.
-    emitted: f64,
-    /// Whether next-event estimation can find its emitter.
-    connectable: bool,
-    /// Power of its beams over its own, if it leaves any.
-    beam_scale: Option<f64>,
-}
-
-impl<const C: usize> Photon<C> {
-    /// Applies a one-sample weight; in one channel it is 1.
-    fn weigh(&mut self, factor: Spectrum<C>, ledger: &mut Ledger) {
-        if C == 1 {
-            return;
-        }
-        let before = self.power.luminance();
-        self.power = self.power * factor;
-        let after = self.power.luminance();
-        if after > before {
-            ledger.roulette_gained += after - before;
-        } else {
-            ledger.roulette_lost += before - after;
-        }
-    }
 }
 
 /// A free flight's end: where, and in which medium.
@@ -164,8 +129,9 @@ impl PhotonTracer<'_> {
             connectable: emitter.kind.can_be_connected(),
             beam_scale,
         };
-        while self.step(&mut photon, rng, out) && self.survives(&mut photon, rng, &mut out.ledger) {
-        }
+        while self.step(&mut photon, rng, out)
+            && photon.survives(&self.integrator, rng, &mut out.ledger)
+        {}
     }
 
     /// One flight and the event at its end; whether there is light left to go on.
@@ -283,7 +249,7 @@ impl PhotonTracer<'_> {
         let survived = photon.power * albedo;
         ledger.absorbed_in_media += (photon.power - survived).luminance();
         photon.power = survived;
-        if !self.goes_on(photon, ledger) {
+        if !photon.goes_on(&self.integrator, ledger) {
             return false;
         }
         let region = flight.spans.iter().find(|s| collision.distance < s.end);
@@ -340,7 +306,7 @@ impl PhotonTracer<'_> {
         out.ledger.absorbed_on_surfaces += (photon.power - survived).luminance();
         photon.power = survived;
         photon.direction = direction;
-        self.goes_on(photon, &mut out.ledger)
+        photon.goes_on(&self.integrator, &mut out.ledger)
     }
 
     /// Reflection or refraction, chosen by the Fresnel reflectance: factor and new direction.
@@ -380,39 +346,5 @@ impl PhotonTracer<'_> {
                 depth,
             });
         }
-    }
-
-    /// Counts an event; whether paths may become deep enough for what comes after it.
-    fn goes_on<const C: usize>(&self, photon: &mut Photon<C>, ledger: &mut Ledger) -> bool {
-        photon.events += 1;
-        if photon.power.is_zero() {
-            return false;
-        }
-        let deep_enough = self.integrator.reaches(photon.events + 2);
-        if !deep_enough {
-            ledger.cut_by_depth += photon.power.luminance();
-        }
-        deep_enough
-    }
-
-    /// Russian roulette.
-    fn survives<const C: usize>(
-        &self,
-        photon: &mut Photon<C>,
-        rng: &mut Stream,
-        ledger: &mut Ledger,
-    ) -> bool {
-        if photon.events + 1 < self.integrator.rr_depth {
-            return true;
-        }
-        let survival = (photon.power.max_channel() / photon.emitted).min(LARGEST_SURVIVAL);
-        let before = photon.power.luminance();
-        if rng.uniform() >= survival {
-            ledger.roulette_lost += before;
-            return false;
-        }
-        photon.power = photon.power / survival;
-        ledger.roulette_gained += photon.power.luminance() - before;
-        true
     }
 }

@@ -77,7 +77,11 @@ pub(crate) fn block(half: DVec3, degrees: f64, centre: DVec3) -> Vec<Primitive> 
 
 /// A point emitter.
 pub(crate) fn point(position: DVec3, intensity: Rgb) -> EmitterPart {
-    EmitterPart { name: "point".to_owned(), kind: EmitterKind::Point { position, intensity } }
+    EmitterPart {
+        name: "point".to_owned(),
+        kind: EmitterKind::Point { position, intensity },
+        stated_medium: None,
+    }
 }
 
 /// The parts of an infinite medium with one emitter.

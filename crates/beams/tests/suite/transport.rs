@@ -269,7 +269,7 @@ fn a_laser_lights_a_surface_directly() {
     let scene = Scene::assemble(SceneParts {
         shapes: vec![scenes::shape("floor", vec![floor], scenes::diffuse(rho))],
         media: vec![],
-        emitters: vec![EmitterPart { name: "laser".to_owned(), kind }],
+        emitters: vec![EmitterPart { name: "laser".to_owned(), kind, stated_medium: None }],
         background: None,
         sensor: scenes::camera(DVec3::new(0.0, 3.0, 4.0), DVec3::new(0.0, -3.0, -4.0), 1.0, (4, 4)),
         film: scenes::film(4, 4, 1.0, 10),
