@@ -171,9 +171,17 @@ pub(crate) struct BeamArgs {
     #[arg(long, value_name = "E")]
     pub(crate) radius_exponent: Option<f64>,
 
+    /// Likewise the surface photons' disc
+    #[arg(long, value_name = "E")]
+    pub(crate) surface_radius_exponent: Option<f64>,
+
     /// Photons emitted in a pass
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     pub(crate) photons: Option<u64>,
+
+    /// How many of them leave beams; all leave surface photons
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    pub(crate) beam_photons: Option<u64>,
 
     /// Camera rays per pixel and pass that gather beams
     #[arg(long, value_name = "N")]
