@@ -91,15 +91,19 @@ impl Fog {
 /// A point light of unit power at `position`.
 pub fn unit_point(position: DVec3) -> EmitterPart {
     let intensity = Rgb::splat(0.25 / PI);
-    EmitterPart { name: "lamp".into(), kind: EmitterKind::Point { position, intensity } }
+    EmitterPart {
+        name: "lamp".into(),
+        kind: EmitterKind::Point { position, intensity },
+        stated_medium: None,
+    }
 }
 
-/// Infinite fog with a point light of unit power on the optical axis.
-pub fn infinite_fog(view: &View, fog: &Fog, light_distance: f64) -> Result<Scene> {
+/// Infinite fog with a point light of unit power.
+pub fn infinite_fog(view: &View, fog: &Fog, light: DVec3) -> Result<Scene> {
     let mut parts = view.parts();
     parts.media = vec![fog.medium()];
     parts.background = Some(MediumId(0));
-    parts.emitters = vec![unit_point(DVec3::new(0.0, 0.0, light_distance))];
+    parts.emitters = vec![unit_point(light)];
     Ok(Scene::assemble(parts)?)
 }
 

@@ -40,6 +40,8 @@ pub struct EmitterPart {
     pub name: String,
     /// What it is (not an area emitter).
     pub kind: EmitterKind,
+    /// The medium that the scene file names for it, if it does; otherwise probes find it.
+    pub stated_medium: Option<MediumId>,
 }
 
 /// All that a scene file says.
@@ -125,13 +127,14 @@ impl Scene {
     /// contradictions.
     pub fn assemble(parts: SceneParts) -> Result<Self, AssembleError> {
         let media_eta = media_indices(&parts)?;
+        let stated: Vec<_> = parts.emitters.iter().map(|e| e.stated_medium).collect();
         let mut scene = lay_out(parts, &media_eta);
         check_null_boundaries(&scene, &media_eta)?;
         let probe = Probe { scene: &scene, media_eta: &media_eta };
         probe.check_boundaries()?;
         let eye = probe.camera_region()?;
         let regions = (0..scene.emitters.len())
-            .map(|e| probe.emitter_region(e))
+            .map(|e| probe.emitter_region(e, stated.get(e).copied().flatten()))
             .collect::<Result<Vec<_>, _>>()?;
         scene.sensor.region = eye;
         for (emitter, region) in scene.emitters.iter_mut().zip(regions) {
@@ -344,19 +347,22 @@ impl Probe<'_> {
 
     fn camera_region(&self) -> Result<Region, AssembleError> {
         let sensor = &self.scene.sensor;
-        let Some(medium) = sensor.stated_medium else {
-            return Ok(self.region(&self.around("the camera's surroundings", sensor.position)?));
-        };
-        // A stated medium wins for the medium; the index still comes from boundaries, else from it.
-        let eta = (0..PROBES_PER_PLACE)
-            .find_map(|i| self.votes(sensor.position, None, spread(i)).eta)
-            .map_or_else(|| medium.map_or(1.0, |id| self.media_eta[id.0 as usize]), |(eta, _)| eta);
-        Ok(Region { medium, eta })
+        match sensor.stated_medium {
+            Some(medium) => Ok(self.stated(sensor.position, medium)),
+            None => Ok(self.region(&self.around("the camera's surroundings", sensor.position)?)),
+        }
     }
 
-    fn emitter_region(&self, index: usize) -> Result<Region, AssembleError> {
+    fn emitter_region(
+        &self,
+        index: usize,
+        stated: Option<MediumId>,
+    ) -> Result<Region, AssembleError> {
         let emitter = &self.scene.emitters[index];
         let place = format!("the surroundings of emitter '{}'", emitter.name);
+        if let (Some(position), Some(medium)) = (emitter.kind.position(), stated) {
+            return Ok(self.stated(position, medium));
+        }
         let votes = match emitter.kind {
             EmitterKind::Point { position, .. } | EmitterKind::Spot { position, .. } => {
                 self.around(&place, position)?
@@ -367,11 +373,21 @@ impl Probe<'_> {
         Ok(self.region(&votes))
     }
 
+    /// A stated medium needs no vote; the index still comes from boundaries, else from the medium.
+    fn stated(&self, position: DVec3, medium: MediumId) -> Region {
+        let votes = (0..PROBES_PER_PLACE).map(|i| self.votes(position, None, spread(i)));
+        let voted = votes.into_iter().find_map(|votes| votes.eta);
+        let eta = voted.map_or(self.media_eta[medium.0 as usize], |(eta, _)| eta);
+        Region { medium: Some(medium), eta }
+    }
+
     /// What boundaries say about the region before one side of a shape, the shape included.
     fn before(&self, place: &str, shape: usize, front: bool) -> Result<Votes, AssembleError> {
         let mut all = Votes::default();
         self.read(&mut all, shape, front);
-        let primitives = &self.scene.shapes[shape].primitives;
+        let Shape { primitives, boundary, emitter, .. } = &self.scene.shapes[shape];
+        // A shape that names no media may reach through several; an emitter must lie in one.
+        let one_medium = boundary.is_some() || emitter.is_some();
         let mut rng = Stream::new(0, 0, shape as u64);
         for _ in 0..PROBES_PER_BOUNDARY {
             let primitive = primitives.start + rng.index(primitives.len()) as u32;
@@ -379,7 +395,11 @@ impl Probe<'_> {
             let up = if front { p.normal } else { -p.normal };
             let local = warp::cosine_hemisphere(rng.uniform(), rng.uniform());
             let direction = tpb_optics::Frame::from_z(up).to_world(local);
-            self.merge(place, &mut all, self.votes(p.position, Some(primitive), direction))?;
+            let mut votes = self.votes(p.position, Some(primitive), direction);
+            if !one_medium {
+                votes.medium = None;
+            }
+            self.merge(place, &mut all, votes)?;
         }
         Ok(all)
     }

@@ -124,6 +124,16 @@ impl EmitterKind {
         }
     }
 
+    /// Where it stands, if it is no shape.
+    pub(crate) fn position(&self) -> Option<DVec3> {
+        match *self {
+            Self::Point { position, .. }
+            | Self::Spot { position, .. }
+            | Self::Laser { position, .. } => Some(position),
+            Self::Area { .. } => None,
+        }
+    }
+
     /// Whether a camera's path can connect to it: not where both its position and its direction
     /// leave no choice.
     pub fn can_be_connected(&self) -> bool {

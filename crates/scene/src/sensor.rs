@@ -30,8 +30,8 @@ pub struct Sensor {
     pub position: DVec3,
     /// What surrounds the pinhole; found when the scene is assembled.
     pub region: Region,
-    /// The medium that the scene file names for the camera, if it does: `Some(None)` is vacuum.
-    pub stated_medium: Option<Option<crate::MediumId>>,
+    /// The medium that the scene file names for the camera, if it does.
+    pub stated_medium: Option<crate::MediumId>,
     left: DVec3,
     up: DVec3,
     forward: DVec3,

@@ -45,7 +45,7 @@ fn assemble(eye: DVec3, lamp: DVec3, shapes: Vec<ShapePart>) -> Result<Scene, As
     Scene::assemble(SceneParts {
         shapes,
         media: vec![medium("fog", 0.5), medium("water", 0.25)],
-        emitters: vec![EmitterPart { name: "lamp".into(), kind }],
+        emitters: vec![EmitterPart { name: "lamp".into(), kind, stated_medium: None }],
         background: None,
         sensor: Sensor::perspective(DAffine3::from_translation(eye), 40.0, FovAxis::X, 4, 4),
         film: FilmSpec { width: 4, height: 4, pixel_format: PixelFormat::Luminance, time: None },
@@ -81,6 +81,22 @@ fn a_glass_ball_without_media_is_a_region_of_its_index() {
     let scene = assemble(DVec3::new(0.0, 0.0, 3.0), DVec3::new(0.2, 0.0, 0.0), vec![ball]).unwrap();
     assert_eq!(scene.emitters[0].region, region(None, 1.5));
     assert_eq!(scene.sensor.region, Region::VACUUM);
+}
+
+#[test]
+fn a_surface_that_names_no_media_may_reach_through_several() {
+    let fog_ball = inside(sphere("fog ball", DVec3::ZERO, 2.0, Bsdf::Null), FOG, None);
+    let screen = ShapePart {
+        primitives: vec![Primitive::Planar(Planar::new(
+            DVec3::new(0.0, 0.0, 0.5),
+            3.0 * DVec3::X,
+            3.0 * DVec3::Y,
+            Outline::Parallelogram,
+        ))],
+        ..sphere("screen", DVec3::ZERO, 1.0, Bsdf::Null)
+    };
+    let eye = DVec3::new(0.0, 0.0, 9.0);
+    assert!(assemble(eye, eye, vec![fog_ball, screen]).is_ok());
 }
 
 #[test]

@@ -82,6 +82,7 @@ fn everything(integrator: IntegratorSpec) -> Scene {
             cos_cutoff: 0.5,
             cos_beam: 0.8,
         },
+        stated_medium: None,
     };
     Scene::assemble(SceneParts {
         shapes,

@@ -96,7 +96,11 @@ pub(super) fn glass(eta: f64) -> Bsdf {
 }
 
 pub(super) fn point_light(position: DVec3, intensity: Rgb) -> EmitterPart {
-    EmitterPart { name: "point".into(), kind: EmitterKind::Point { position, intensity } }
+    EmitterPart {
+        name: "point".into(),
+        kind: EmitterKind::Point { position, intensity },
+        stated_medium: None,
+    }
 }
 
 /// Depths from `min` to `max`, no roulette.

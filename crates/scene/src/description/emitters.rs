@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::materials::Medium;
 use super::transform::{Transform, Vector};
 use super::values::{Colour, ConeAngle, NonNegative, Positive, grey};
 
@@ -41,6 +42,9 @@ pub struct Point {
     /// Radiant intensity \[W/sr\], at least 0.
     #[serde(default = "unit")]
     pub intensity: Colour<NonNegative>,
+    /// The medium around it; found from the shapes around it unless given.
+    #[serde(default)]
+    pub medium: Option<Medium>,
 }
 
 /// `spot`: shines along local +z into a cone, with a linear falloff at its rim.
@@ -60,6 +64,9 @@ pub struct Spot {
     /// unless given.
     #[serde(default)]
     pub beam_width: Option<NonNegative>,
+    /// The medium around it; found from the shapes around it unless given.
+    #[serde(default)]
+    pub medium: Option<Medium>,
 }
 
 /// `laser` (extension): a disc that sends a collimated beam along local +z, uniform over the
@@ -75,6 +82,9 @@ pub struct Laser {
     /// Total power \[W\], at least 0.
     #[serde(default = "unit")]
     pub power: Colour<NonNegative>,
+    /// The medium around it; found from the shapes around it unless given.
+    #[serde(default)]
+    pub medium: Option<Medium>,
 }
 
 /// `area`: makes a shape shine, on the side of its normal.

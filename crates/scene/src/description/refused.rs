@@ -189,7 +189,6 @@ const PARAMETERS: &[(&str, &str)] = &[
     ("hide_emitters", "leave it out; `min_depth` 2 leaves out all directly seen light"),
     ("id", "the key of an object in the scene is its id: leave it out"),
     ("k", "only `material` `none`, a perfect mirror, is supported"),
-    ("medium", "the medium around it is found from the shapes around it: leave it out"),
     ("near_clip", "nothing is clipped: leave it out"),
     ("principal_point_offset_x", "turn the camera instead"),
     ("principal_point_offset_y", "turn the camera instead"),

@@ -75,7 +75,7 @@ fn the_cornell_box_is_what_its_file_says() {
 fn the_background_fills_the_infinite_scene() {
     let scene = shipped("infinite-point");
     assert_eq!(scene.background.medium, Some(MediumId(0)));
-    assert_eq!(scene.sensor.stated_medium, Some(Some(MediumId(0))));
+    assert_eq!(scene.sensor.stated_medium, Some(MediumId(0)));
     assert_eq!(scene.sensor.region.medium, Some(MediumId(0)));
 }
 
@@ -324,4 +324,15 @@ fn a_file_that_is_missing_or_no_text_is_an_error() {
     let Err(error) = load_scene(&bytes, &[]) else { panic!("this is no text") };
     assert!(error.message().contains("not UTF-8"), "{error}");
     assert!(!error_of("").to_string().is_empty());
+}
+
+#[test]
+fn an_emitter_may_state_its_medium() {
+    let scene = scene(
+        "wet",
+        r#"{"type": "point", "medium": {"type": "homogeneous", "sigma_t": 2.0, "eta": 1.3}}"#,
+    );
+    let region = scene.emitters.iter().find(|e| e.name == "wet").expect("it is there").region;
+    let sigma_t = scene.medium(region.medium.expect("a medium")).coefficients.sigma_t;
+    assert_eq!((sigma_t, region.eta), (Rgb::splat(2.0), 1.3));
 }

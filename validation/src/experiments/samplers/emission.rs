@@ -39,7 +39,7 @@ pub(super) fn tests(samples: u64, seed: u64) -> Result<Vec<Tested>> {
 fn scene(emitters: Vec<EmitterKind>, lamps: Vec<(Vec<Primitive>, f64)>) -> Result<Scene> {
     let view = View { pixels: 1, fov: 10.0, time: None, integrator: IntegratorSpec::default() };
     let mut parts = view.parts();
-    let part = |kind| EmitterPart { name: "lamp".into(), kind };
+    let part = |kind| EmitterPart { name: "lamp".into(), kind, stated_medium: None };
     parts.emitters = emitters.into_iter().map(part).collect();
     parts.shapes = lamps
         .into_iter()

@@ -47,7 +47,7 @@ impl<'a> Builder<'a> {
         if let Some(medium) = &camera.medium {
             let name = || "sensor.medium".to_owned();
             let id = self.medium(medium, node.get_or_self("medium"), name)?;
-            sensor.stated_medium = Some(Some(id));
+            sensor.stated_medium = Some(id);
         }
         Ok((sensor, film))
     }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::Builder;
 use super::shapes::within_limits;
 use crate::description as words;
 use crate::load::transform;
@@ -9,14 +10,28 @@ use crate::load::tree::{Member, Node};
 use crate::load::trouble::{Outcome, Trouble};
 use crate::{EmitterKind, EmitterPart};
 
-pub(super) fn emitter(emitter: &words::Emitter, member: &Member) -> Outcome<EmitterPart> {
-    let node = &member.value;
-    let kind = match emitter {
-        words::Emitter::Point(lamp) => point(lamp, node)?,
-        words::Emitter::Spot(lamp) => spot(lamp, node)?,
-        words::Emitter::Laser(lamp) => laser(lamp, node)?,
-    };
-    Ok(EmitterPart { name: member.key.clone(), kind })
+impl<'a> Builder<'a> {
+    /// An emitter with its placement, and the medium that it names.
+    pub(super) fn emitter(
+        &mut self,
+        emitter: &words::Emitter,
+        member: &'a Member,
+    ) -> Outcome<EmitterPart> {
+        let node = &member.value;
+        let (kind, medium) = match emitter {
+            words::Emitter::Point(lamp) => (point(lamp, node)?, &lamp.medium),
+            words::Emitter::Spot(lamp) => (spot(lamp, node)?, &lamp.medium),
+            words::Emitter::Laser(lamp) => (laser(lamp, node)?, &lamp.medium),
+        };
+        let stated_medium = medium
+            .as_ref()
+            .map(|medium| {
+                let name = || format!("{}.medium", member.key);
+                self.medium(medium, node.get_or_self("medium"), name)
+            })
+            .transpose()?;
+        Ok(EmitterPart { name: member.key.clone(), kind, stated_medium })
+    }
 }
 
 fn point(lamp: &words::Point, node: &Node) -> Outcome<EmitterKind> {

@@ -56,7 +56,7 @@ impl<'a> Builder<'a> {
         for entry in &dictionary.entries {
             match &entry.object {
                 Object::Shape(shape) => shapes.push(self.shape(shape, entry.member)?),
-                Object::Emitter(emitter) => emitters.push(lamps::emitter(emitter, entry.member)?),
+                Object::Emitter(emitter) => emitters.push(self.emitter(emitter, entry.member)?),
                 _ => {}
             }
         }
