@@ -36,6 +36,10 @@ use crate::tiles::Tiles;
 /// Largest probability to survive roulette, so that light that loses nothing ends too.
 const LARGEST_SURVIVAL: f64 = 0.95;
 
+/// Steps of the additive recurrence that spreads a pixel's paths evenly over it, from a random
+/// start (Roberts 2018, the R2 sequence: 1/φ and 1/φ² of the plastic number φ).
+const PLASTIC: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+
 /// All that a pixel's estimate reads.
 pub(crate) struct Camera<'a, const C: usize, K> {
     pub(crate) scene: &'a Scene,
@@ -70,10 +74,12 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
         let Settings { gather_samples, surface_samples, .. } = *self.settings;
         let gather_samples = if self.plan.beams { gather_samples } else { 0 };
         let mut pairs = Pairs::default();
+        let shift = [rng.uniform(), rng.uniform()];
         for sample in 0..gather_samples.max(surface_samples) {
             let width = self.scene.film.width;
             let (x, y) = (pixel % width, pixel / width);
-            let (a, b) = (x as f64 + rng.uniform(), y as f64 + rng.uniform());
+            let [a, b] = PLASTIC.map(|step| f64::from(sample) * step);
+            let (a, b) = (x as f64 + (shift[0] + a).fract(), y as f64 + (shift[1] + b).fract());
             let direction = self.scene.sensor.direction(a, b);
             let share = |samples: u32| (sample < samples).then(|| 1.0 / f64::from(samples));
             let mut path = Path {
