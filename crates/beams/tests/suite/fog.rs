@@ -1,7 +1,7 @@
 //! Single scattering in endless fog around a point light, against the exact expected blur.
 //!
 //! Camera at 0 looking along +z, isotropic light of energy Q at axial distance z and distance b
-//! from the ray, time as path length x, q = x − z. Own derivation, reference entry 8:
+//! from the ray, time as path length x, q = x − z. The mean over directions of the kernels in closed form:
 //!
 //! ```text
 //! 1D: E[L](x) = 1/(2R) ∫_{−min(R,b)}^{min(R,b)} L(x; √(b² − y²), z) dy,
