@@ -29,6 +29,7 @@ use crate::cube::Cube;
 use crate::error::{Result, ValidationError};
 use crate::measure::{Estimator, layout};
 use crate::reference_cube::{Provenance, ReferenceCube};
+use crate::statistics::split::Estimate;
 use crate::statistics::{Gram, RatioInterval, Split, ratio_of_means, student};
 
 /// Confidence of all intervals.
@@ -68,11 +69,18 @@ pub struct MethodResult {
     pub split: Split,
     /// Parts of the error over the whole cube.
     pub split_whole: Split,
-    /// z of the pixel-wise bias; meaningful where pixels are independent.
-    pub bias_z: f64,
+    /// Squared bias by the pixel-wise estimate, over the signal; its standard error and interval
+    /// are meaningful where pixels are independent.
+    pub pixel_bias: Estimate,
 }
 
 impl MethodResult {
+    /// z of the pixel-wise squared bias.
+    pub fn bias_z(&self) -> f64 {
+        let Estimate { value, standard_error, .. } = self.pixel_bias;
+        if value == 0.0 { 0.0 } else { value / standard_error }
+    }
+
     /// Mean over replicates.
     pub fn mean(&self, of: impl Fn(&Replicate) -> f64) -> f64 {
         self.replicates.iter().map(of).sum::<f64>() / self.replicates.len() as f64
@@ -223,7 +231,7 @@ impl EqualTimePlan<'_> {
             replicates,
             split,
             split_whole,
-            bias_z: errors.bias_z,
+            pixel_bias: errors.pixel_bias(noise.signal()),
         })
     }
 }
@@ -232,7 +240,8 @@ impl EqualTimePlan<'_> {
 struct Errors {
     judged: Gram,
     whole: Gram,
-    bias_z: f64,
+    /// Σ b_k and Σ b_k².
+    bias: [f64; 2],
 }
 
 impl Errors {
@@ -256,15 +265,20 @@ impl Errors {
                 judged.add(&gram);
             }
         }
-        let bias_z = if squares > 0.0 { sum / f64::sqrt(squares) } else { 0.0 };
-        Self { judged, whole, bias_z }
+        Self { judged, whole, bias: [sum, squares] }
+    }
+
+    fn pixel_bias(&self, signal: f64) -> Estimate {
+        let [value, standard_error] = [self.bias[0] / signal, self.bias[1].sqrt() / signal];
+        let half = student::quantile(0.5 * (1.0 - CONFIDENCE), 1e6) * standard_error;
+        Estimate { value, standard_error, interval: [value - half, value + half] }
     }
 }
 
 impl EqualTime {
     /// P(z at least as large) of a method whose pixels are independent.
     pub fn bias_p(method: &MethodResult) -> f64 {
-        student::upper_tail(method.bias_z, 1e6)
+        student::upper_tail(method.bias_z(), 1e6)
     }
 
     /// A table for people, one line each.
@@ -296,7 +310,7 @@ impl EqualTime {
         ));
         for m in &self.methods {
             let mut line = String::new();
-            let interval = |e: &crate::statistics::split::Estimate| {
+            let interval = |e: &Estimate| {
                 format!("{:.2e} [{:.1e},{:.1e}]", e.value, e.interval[0], e.interval[1])
             };
             let _ = write!(
@@ -313,7 +327,7 @@ impl EqualTime {
                 interval(&m.split.squared_bias),
                 m.split_whole.nmse.value,
                 m.work().iter().sum::<f64>() / m.replicates.len() as f64,
-                m.bias_z,
+                m.bias_z(),
             );
             lines.push(line);
         }

@@ -1,5 +1,6 @@
 //! What can keep an experiment from having a result at all.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 
 /// Why an experiment, or a reference render, could not be carried out.
@@ -40,8 +41,8 @@ impl ValidationError {
     }
 
     /// Something that cannot be used.
-    pub(crate) fn unusable(what: impl Into<String>, reason: impl ToString) -> Self {
-        Self::Unusable { what: what.into(), reason: reason.to_string() }
+    pub(crate) fn unusable(what: impl Into<String>, reason: impl Display) -> Self {
+        Self::Unusable { what: what.into(), reason: format!("{reason}") }
     }
 }
 

@@ -89,8 +89,10 @@ pub struct Outcome {
     pub interval: Option<[f64; 2]>,
     /// The smallest p value, corrected for the number of tests, if there are tests.
     pub worst_p: Option<f64>,
-    /// Chance of failing though nothing is wrong.
+    /// Chance of calling something different, or biased, though nothing is wrong.
     pub false_alarm: f64,
+    /// Chance that noise hides what is claimed, so that a sound program fails for lack of power.
+    pub unresolved: f64,
     /// Chance of missing a difference of the size that was observed.
     pub miss: f64,
     /// Remarks for the reader.
@@ -99,6 +101,19 @@ pub struct Outcome {
     pub contrasts: Vec<Contrast>,
     /// The table of an equal-time run.
     pub equal_time: Option<EqualTime>,
+    /// Deviations of all bins; written apart when the experiment fails.
+    #[serde(skip)]
+    pub z_map: Option<ZMap>,
+}
+
+/// (mean − expected)/standard error of every bin of every pixel. A picture of where an error is;
+/// no verdict rests on it, for cells are correlated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ZMap {
+    /// Pixels in a row of the image.
+    pub width: usize,
+    /// One row of bins for each pixel.
+    pub rows: Vec<Vec<f64>>,
 }
 
 impl Outcome {
@@ -111,10 +126,12 @@ impl Outcome {
             interval: None,
             worst_p: None,
             false_alarm: 0.0,
+            unresolved: 0.0,
             miss: 0.0,
             notes,
             contrasts: Vec::new(),
             equal_time: None,
+            z_map: None,
         }
     }
 
@@ -149,10 +166,12 @@ impl From<Judgement> for Outcome {
             interval: Some(judgement.interval),
             worst_p: Some(judgement.worst_p),
             false_alarm: judgement.false_alarm,
+            unresolved: judgement.unresolved,
             miss: judgement.miss,
             notes,
             contrasts: judgement.contrasts,
             equal_time: None,
+            z_map: None,
         }
     }
 }
@@ -235,7 +254,7 @@ impl<E: Experiment> Experiment for Twin<E> {
         let mut outcome = self.inner.run(context)?;
         let rejected = outcome.finding == Finding::Different;
         outcome.verdict = if rejected { Verdict::Passed } else { Verdict::Failed };
-        outcome.false_alarm = outcome.miss;
+        (outcome.false_alarm, outcome.unresolved) = (0.0, outcome.miss);
         outcome.notes = vec![if rejected {
             "rejected, as it must be".to_owned()
         } else {

@@ -4,12 +4,13 @@
 //! * [`statistics`]: batches, tests, equivalence, ratios, the split of an error.
 //! * [`experiment`]: what an experiment is; its sabotaged twin; [`registry`]: all of them.
 //! * [`experiments`]: the questions themselves, one module for each subject.
-//! * [`cube`], [`contrasts`], [`measure`]: time-resolved images as numbers, reduced to the few
+//! * [`cube`], [`contrasts`], [`measure`], [`comparison`]: time-resolved images as numbers, reduced to the few
 //!   that are judged, batch by batch.
 //! * [`equal_time`], [`reference_cube`]: methods against each other at equal time, and the long
 //!   render that both are compared with.
 //! * [`suite`], [`report`]: running many, and what is printed and written.
 
+pub mod comparison;
 pub mod contrasts;
 pub mod cube;
 pub mod equal_time;

@@ -310,7 +310,7 @@ mod tests {
         for pixel in 0..6 {
             for (bin, cell) in cube.pixel_mut(pixel)[1..=4].iter_mut().enumerate() {
                 // Frames of very different brightness.
-                *cell = (pixel as f64 + 0.123_456) * 1e-6_f64.powi(bin as i32);
+                *cell = (pixel as f64 + 0.123_456) * 1e-6_f64.powf(bin as f64);
             }
         }
         let mut reference = ReferenceCube {

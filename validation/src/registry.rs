@@ -28,7 +28,7 @@ pub fn experiments(effort: Effort) -> Vec<Box<dyn Experiment>> {
     list.push(Box::new(SingleScatter::new(Who::Beams1d, 0.0)));
     list.push(Box::new(SingleScatter::new(Who::Beams1d, 0.6)));
     list.push(Box::new(SingleScatter::new(Who::Beams2d, 0.0)));
-    list.extend(controls());
+    list.extend(controls(effort));
     list.push(Box::new(EqualTimeRun {
         scene: "cornell-blocks",
         beams_win: true,
@@ -44,16 +44,19 @@ pub fn experiments(effort: Effort) -> Vec<Box<dyn Experiment>> {
 }
 
 /// Sabotaged twins, which must be rejected.
-fn controls() -> Vec<Box<dyn Experiment>> {
+fn controls(effort: Effort) -> Vec<Box<dyn Experiment>> {
     let single = |who, sabotage| Twin::new(sabotage, SingleScatter::new(who, 0.0).with(sabotage));
     let (sigma, late) = (Sabotage::SigmaS(1.01), Sabotage::TimeShift(0.5));
     let sphere = SphereOrder { order: 3, sabotage: Some(late) };
-    vec![
+    let mut list: Vec<Box<dyn Experiment>> = vec![
         Box::new(single(Who::Path, sigma)),
         Box::new(Twin::new(late, sphere)),
         Box::new(single(Who::Beams1d, Sabotage::KernelNormalisation(1.02))),
-        Box::new(single(Who::Beams2d, Sabotage::KernelNormalisation(1.02))),
-    ]
+    ];
+    if effort == Effort::Full {
+        list.push(Box::new(single(Who::Beams2d, Sabotage::KernelNormalisation(1.02))));
+    }
+    list
 }
 
 #[cfg(test)]

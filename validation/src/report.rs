@@ -1,13 +1,14 @@
 //! What is printed of a suite, and what a failing experiment leaves on disk.
 //!
 //! Text is made here and printed by the caller. A failing experiment leaves its contrasts as CSV
-//! (expectation, mean, standard error, z, interval, p) and everything it found as JSON.
+//! (expectation, mean, standard error, z, interval, p), the deviation of every bin in standard errors,
+//! and everything it found as JSON.
 
 use std::fs;
 use std::path::PathBuf;
 
 use crate::error::{Result, ValidationError};
-use crate::experiment::{Context, Experiment, Outcome, Verdict};
+use crate::experiment::{Context, Experiment, Outcome, Verdict, ZMap};
 use crate::suite::{Record, SuiteResult};
 
 /// The plan: what will be run.
@@ -57,15 +58,16 @@ pub fn summary(result: &SuiteResult) -> Vec<String> {
     let count = |verdict| result.records.iter().filter(|r| r.verdict == verdict).count();
     let verdict = if result.passed() { "PASSED" } else { "FAILED" };
     lines.push(format!(
-        "chance that a sound program fails: {:.1e} (nominal {:.0e})",
-        result.false_alarm, result.nominal
+        "chance that a sound program is called wrong: {:.1e} (nominal {:.0e}); that noise hides a claim: {:.1e}",
+        result.false_alarm, result.nominal, result.unresolved
     ));
     lines.push(format!(
-        "validate: {verdict} passed={} failed={} broken={} false_alarm={:.2e} seconds={:.1}",
+        "validate: {verdict} passed={} failed={} broken={} false_alarm={:.2e} unresolved={:.2e} seconds={:.1}",
         count(Verdict::Passed),
         count(Verdict::Failed),
         count(Verdict::Broken),
         result.false_alarm,
+        result.unresolved,
         result.seconds
     ));
     lines
@@ -104,6 +106,9 @@ pub(crate) fn leave_tables(record: &Record, context: &Context) -> Result<Vec<Pat
     if !outcome.contrasts.is_empty() {
         write("contrasts.csv", contrasts(outcome))?;
     }
+    if let Some(map) = &outcome.z_map {
+        write("z-map.csv", z_map(map))?;
+    }
     Ok(files)
 }
 
@@ -125,4 +130,14 @@ fn contrasts(outcome: &Outcome) -> String {
         )
     };
     outcome.contrasts.iter().fold(header.to_owned(), |text, c| text + &row(c))
+}
+
+fn z_map(map: &ZMap) -> String {
+    let bins = map.rows.first().map_or(0, Vec::len);
+    let header = (0..bins).fold("column,row".to_owned(), |text, bin| text + &format!(",bin {bin}"));
+    let row = |(pixel, row): (usize, &Vec<f64>)| {
+        let place = format!("\n{},{}", pixel % map.width, pixel / map.width);
+        row.iter().fold(place, |text, z| text + &format!(",{z:.2}"))
+    };
+    map.rows.iter().enumerate().map(row).fold(header, |text, row| text + &row) + "\n"
 }

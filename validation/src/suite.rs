@@ -45,6 +45,8 @@ pub struct SuiteResult {
     pub false_alarm: f64,
     /// Nominal level of that sum.
     pub nominal: f64,
+    /// Sum of the chances that noise hides what is claimed.
+    pub unresolved: f64,
 }
 
 impl SuiteResult {
@@ -69,9 +71,12 @@ pub fn run_suite(
         each(&record);
         records.push(record);
     }
-    let alarms = records.iter().filter_map(|record| record.outcome.as_ref());
+    let sum = |of: fn(&Outcome) -> f64| {
+        records.iter().filter_map(|record| record.outcome.as_ref()).map(of).sum()
+    };
     SuiteResult {
-        false_alarm: alarms.map(|outcome| outcome.false_alarm).sum(),
+        false_alarm: sum(|outcome| outcome.false_alarm),
+        unresolved: sum(|outcome| outcome.unresolved),
         nominal: SUITE_LEVEL,
         seconds: started.elapsed().as_secs_f64(),
         records,

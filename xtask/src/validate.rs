@@ -84,7 +84,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Outcome {
         return Err("no experiment matches the filter; --list shows all".into());
     }
     say(&format!("plan: {} experiments", chosen.len()));
-    report::plan(&chosen).iter().for_each(|line| say(line));
+    say_all(&report::plan(&chosen));
     if args.list {
         return Ok(true);
     }
@@ -97,14 +97,14 @@ pub(crate) fn run(args: &ValidateArgs) -> Outcome {
     let result = with_threads(args.threads, || {
         suite::run_suite(&chosen, &context, repeat, |record| {
             say(&report::line(record, width));
-            report::remarks(record).iter().for_each(|line| say(line));
+            say_all(&report::remarks(record));
         })
     })?;
     if let Some(path) = &args.json {
         suite::write_json(&result, path)?;
     }
     say("");
-    report::summary(&result).iter().for_each(|line| say(line));
+    say_all(&report::summary(&result));
     Ok(result.passed())
 }
 
@@ -129,6 +129,12 @@ pub(crate) fn reference_render(args: &ReferenceRenderArgs) -> Outcome {
         made.mask.iter().filter(|&&judged| judged).count()
     ));
     Ok(true)
+}
+
+fn say_all(lines: &[String]) {
+    for line in lines {
+        say(line);
+    }
 }
 
 /// The commit of the sources, with a mark if they differ from it.

@@ -127,9 +127,9 @@ fn around(name: String, opl: f64) -> LinearContrast {
 impl FresnelChoice {
     fn estimator(self) -> Estimator {
         match self {
-            Self::Path => Estimator::Path(PathOptions { samples_per_pass: 3600.try_into().ok() }),
+            Self::Path => Estimator::Path(PathOptions { samples_per_pass: 2500.try_into().ok() }),
             Self::Beams => Estimator::Beams(BeamOptions {
-                surface_samples: Some(3600),
+                surface_samples: Some(2500),
                 ..BeamOptions::default()
             }),
         }
@@ -188,7 +188,9 @@ impl Experiment for FresnelChoice {
             }
         }
         let mut batches = Batches::new();
-        values.into_iter().for_each(|row| batches.push(row));
+        for row in values {
+            batches.push(row);
+        }
         Ok(judge(&targets, &batches, &Criterion::UNBIASED).into())
     }
 }

@@ -156,7 +156,7 @@ impl Pair {
         let thickness = 2e-5;
         let mut bins = vec![0.0; edges.len() - 1];
         let covered = |u: f64| self.covered(kernel, thickness, u);
-        for (start, end) in covered_parts(&covered, self.candidates(kernel, thickness)) {
+        for (start, end) in covered_parts(&covered, &self.candidates(kernel, thickness)) {
             for (bin, ends) in bins.iter_mut().zip(edges.windows(2)) {
                 // Arrival never decreases along the ray.
                 let at = |edge: f64| bisect(|u| self.arrival(u) >= edge, start, end);
@@ -234,7 +234,7 @@ impl Pair {
 }
 
 /// The runs of `candidates` that are covered, their ends found by bisection.
-fn covered_parts(covered: &impl Fn(f64) -> bool, candidates: Vec<f64>) -> Vec<(f64, f64)> {
+fn covered_parts(covered: &impl Fn(f64) -> bool, candidates: &[f64]) -> Vec<(f64, f64)> {
     let mut parts = Vec::new();
     let mut open = candidates.first().copied().filter(|&u| covered(u));
     for ends in candidates.windows(2) {

@@ -9,13 +9,14 @@ use tpb_path::PathOptions;
 use tpb_reference::diffuse_sphere::{Order, SphereCentreBin, sphere_centre_radiance_bins};
 use tpb_scene::TimeSpec;
 
-use crate::contrasts::{standard, targets};
+use crate::comparison::Comparison;
+use crate::contrasts::standard;
 use crate::cube::Cube;
 use crate::error::Result;
 use crate::experiment::{Context, Experiment, Outcome, Sabotage};
-use crate::measure::{BatchPlan, Estimator, batches, layout};
+use crate::measure::{BatchPlan, Estimator, layout};
 use crate::scenes::{View, diffuse_sphere, only_depth};
-use crate::statistics::{Batches, Criterion, judge};
+use crate::statistics::Criterion;
 
 const ALBEDO: f64 = 0.7;
 
@@ -78,7 +79,7 @@ impl Experiment for SphereOrder {
             })
             .collect();
         let contrasts = standard(&expected, &groups, context.effort.pick(6, 12));
-        let samples = if self.order == 1 { 4 } else { 400 };
+        let samples = if self.order == 1 { 4 } else { 1200 };
         let estimator = Estimator::Path(PathOptions { samples_per_pass: samples.try_into().ok() });
         let plan = BatchPlan {
             batches: 64,
@@ -86,11 +87,17 @@ impl Experiment for SphereOrder {
             seed: context.seed,
         };
         let shift = Sabotage::shift_bins(self.sabotage) * TIME.bin_width_opl;
-        let mut values = Batches::new();
-        batches(&scene, &estimator, layout(&scene.film, shift)?, &plan, |cube| {
-            values.push(contrasts.iter().map(|c| c.value(cube)).collect());
-        })?;
-        let targets = targets(&contrasts, &expected, None);
-        Ok(judge(&targets, &values, &Criterion::UNBIASED).into())
+        Comparison {
+            scene: &scene,
+            estimator,
+            layout: layout(&scene.film, shift)?,
+            plan,
+            factor: 1.0,
+            expected: &expected,
+            coarser: None,
+            contrasts: &contrasts,
+            criterion: Criterion::UNBIASED,
+        }
+        .run()
     }
 }

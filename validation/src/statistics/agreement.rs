@@ -10,9 +10,9 @@
 //!    (Schuirmann's equivalence test). Yes: [`Finding::Equivalent`]. No: [`Finding::Unresolved`],
 //!    which counts as failed: noise is no excuse.
 //!
-//! The false-alarm probability is the chance of anything but `Equivalent` for an unbiased
-//! estimator of the observed noise: the level of question 1, plus for question 2, by Bonferroni,
-//! Σ_k P(|T| > (margin − half width)/s_k). The second part is conditional on the observed s_k.
+//! The false-alarm probability, the chance to call an unbiased estimator different, is the level of
+//! question 1. The chance that its noise leaves it unresolved is, by Bonferroni and conditional on
+//! the observed s_k, Σ_k P(|T| > (margin − half width)/s_k): a matter of the budget.
 //! Likewise the miss probability, for a negative control, is the chance that a difference as
 //! large as observed stays below the critical value of at least one contrast: that of the most
 //! significant one.
@@ -98,8 +98,10 @@ pub struct Judgement {
     pub worst_p: f64,
     /// The interval that reaches farthest from 0.
     pub interval: [f64; 2],
-    /// Chance of failing though nothing is wrong.
+    /// Chance of calling an estimator different though nothing is wrong.
     pub false_alarm: f64,
+    /// Chance that a sound estimator of this noise is left unresolved.
+    pub unresolved: f64,
     /// Chance of missing a difference of the size that was observed.
     pub miss: f64,
 }
@@ -137,7 +139,8 @@ pub fn judge(targets: &[Target], batches: &Batches, criterion: &Criterion) -> Ju
         finding,
         worst_p,
         interval,
-        false_alarm: (criterion.level + outside).min(1.0),
+        false_alarm: criterion.level,
+        unresolved: outside.min(1.0),
         miss: miss(&contrasts, criterion, freedom),
         contrasts,
     }

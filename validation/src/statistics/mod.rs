@@ -13,7 +13,8 @@
 //! * [`split`]: the error of a cube, split into variance and squared bias without bias.
 //!
 //! No variance is ever raised to a floor. Every verdict carries its false-alarm probability: how
-//! likely it is to fail when nothing is wrong; a suite adds them up.
+//! likely it is to find a difference where there is none; a suite adds them up. Apart from it stands
+//! the chance that noise leaves a question unresolved, which a larger budget lowers.
 
 pub mod agreement;
 pub mod batches;

@@ -120,8 +120,7 @@ impl Gram {
     /// The parts of the NMSE; `None` under three replicates or without a signal.
     pub fn split(&self, reference: &ReferenceNoise, confidence: f64) -> Option<Split> {
         let signal = reference.signal();
-        // Written so that a NaN gives none.
-        if self.n < 3 || !(signal > 0.0) {
+        if self.n < 3 || signal.is_nan() || signal <= 0.0 {
             return None;
         }
         let parts = |[own, cross]: [f64; 2]| {

@@ -1,0 +1,103 @@
+//! One estimator against one expected cube: batches in, outcome with a z map out.
+
+use tpb_film::Layout;
+use tpb_scene::Scene;
+
+use crate::contrasts::{LinearContrast, targets};
+use crate::cube::Cube;
+use crate::error::Result;
+use crate::experiment::{Outcome, ZMap};
+use crate::measure::{BatchPlan, Estimator, batches};
+use crate::statistics::{Batches, Criterion, judge};
+
+/// What is compared with what, and how.
+pub struct Comparison<'a> {
+    /// What is rendered.
+    pub scene: &'a Scene,
+    /// By whom.
+    pub estimator: Estimator,
+    /// Into which film.
+    pub layout: Layout,
+    /// In which batches.
+    pub plan: BatchPlan,
+    /// A factor on the estimate (1, but for sabotage).
+    pub factor: f64,
+    /// What is expected.
+    pub expected: &'a Cube,
+    /// The expectation by a coarser rule, which tells its error.
+    pub coarser: Option<&'a Cube>,
+    /// Which sums are judged.
+    pub contrasts: &'a [LinearContrast],
+    /// What is asked of them.
+    pub criterion: Criterion,
+}
+
+impl Comparison<'_> {
+    /// Renders and judges.
+    pub fn run(self) -> Result<Outcome> {
+        let mut values = Batches::new();
+        let mut cells = CellMoments::new(self.expected.values.len());
+        batches(self.scene, &self.estimator, self.layout, &self.plan, |cube| {
+            values.push(self.contrasts.iter().map(|c| self.factor * c.value(cube)).collect());
+            cells.add(cube, self.factor);
+        })?;
+        let targets = targets(self.contrasts, self.expected, self.coarser);
+        let mut outcome: Outcome = judge(&targets, &values, &self.criterion).into();
+        outcome.z_map = Some(cells.z_map(self.expected));
+        Ok(outcome)
+    }
+}
+
+/// Running mean and sum of squared deviations of each cell (Welford 1962).
+struct CellMoments {
+    batches: f64,
+    mean: Vec<f64>,
+    squares: Vec<f64>,
+}
+
+impl CellMoments {
+    fn new(cells: usize) -> Self {
+        Self { batches: 0.0, mean: vec![0.0; cells], squares: vec![0.0; cells] }
+    }
+
+    fn add(&mut self, cube: &Cube, factor: f64) {
+        self.batches += 1.0;
+        let moments = self.mean.iter_mut().zip(&mut self.squares);
+        for ((mean, squares), value) in moments.zip(&cube.values) {
+            let before = factor * value - *mean;
+            *mean += before / self.batches;
+            *squares += before * (factor * value - *mean);
+        }
+    }
+
+    /// (mean − expected)/standard error of every bin; NaN where there is no noise.
+    fn z_map(&self, expected: &Cube) -> ZMap {
+        let n = self.batches;
+        let z = |cell: usize| {
+            let standard_error = (self.squares[cell] / (n * (n - 1.0))).sqrt();
+            (self.mean[cell] - expected.values[cell]) / standard_error
+        };
+        let per_pixel = expected.bins + 2;
+        let row =
+            |pixel: usize| (1..=expected.bins).map(|bin| z(pixel * per_pixel + bin)).collect();
+        ZMap { width: expected.width, rows: (0..expected.pixels()).map(row).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn z_is_in_standard_errors_of_the_mean() {
+        let mut cells = CellMoments::new(3);
+        for value in [1.0, 2.0, 3.0] {
+            let mut cube = Cube::zero(1, 1, 1);
+            cube.pixel_mut(0)[1] = value;
+            cells.add(&cube, 2.0);
+        }
+        // Mean 4, standard error 2/√3.
+        let z = cells.z_map(&Cube::zero(1, 1, 1)).rows[0][0];
+        assert!((z - 2.0 * 3.0_f64.sqrt()).abs() < 1e-14, "{z}");
+    }
+}
