@@ -6,10 +6,13 @@ use tpb_optics::Spectrum;
 
 const DEPOSITS_PER_PIXEL: usize = 100;
 
+/// Makes an arrival that starts at an OPL.
+type ArrivalAt = fn(f64) -> Arrival<'static, 1>;
+
 fn deposit(criterion: &mut Criterion) {
     let time = TimeAxis { start_opl: 0.0, bin_width_opl: 0.07, bins: 200 };
     let layout = Layout { width: 64, height: 64, time: Some(time) };
-    let kinds: [(&str, fn(f64) -> Arrival<'static, 1>); 4] = [
+    let kinds: [(&str, ArrivalAt); 4] = [
         ("instant", Arrival::Instant),
         ("uniform over 3 bins", |t| {
             Arrival::Profile(TemporalProfile::Uniform { start: t, end: t + 0.2 })

@@ -1,10 +1,12 @@
-//! What the benchmarks share: the scenes that they measure on.
+//! What the benchmarks share: the scenes that they measure on, their films, one thread.
 //!
 //! `cargo bench -p tpb-benches` runs all; times are reported, never asserted.
 
 use std::path::Path;
 
-use tpb_scene::Scene;
+use tpb_film::TransientFilm;
+use tpb_render::{FilmSetup, RenderOptions, with_threads};
+use tpb_scene::{Scene, Transport};
 
 /// A scene that ships in `validation/scenes`, by its name.
 ///
@@ -14,4 +16,21 @@ pub fn shipped_scene(name: &str) -> Scene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../validation/scenes");
     let file = folder.join(format!("{name}.json"));
     tpb_scene::load::load_scene(&file, &[]).expect("shipped scenes load").scene
+}
+
+/// The film that an achromatic scene asks for.
+///
+/// # Panics
+/// If there is no memory for it.
+pub fn film_of(scene: &Scene) -> TransientFilm<1> {
+    let setup = FilmSetup::new(&scene.film, Transport::Mono, &RenderOptions::default());
+    setup.expect("a sound film").film().expect("a film that fits")
+}
+
+/// Runs `work` on one thread: figures are per core.
+///
+/// # Panics
+/// If the thread cannot be started.
+pub fn one_thread<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    with_threads(Some(1), work).expect("a thread")
 }

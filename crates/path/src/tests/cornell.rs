@@ -1,20 +1,16 @@
 //! The Cornell box with two blocks in fog, built in code, and a coloured relative of it with glass
 //! and a mirror: threads, and speed.
 
-use std::io::Write;
-use std::time::Instant;
-
 use glam::{DMat3, DVec3};
 use rayon::ThreadPoolBuilder;
 use tpb_optics::{Rgb, Spectrum};
 use tpb_render::{Method, PassId};
-use tpb_scene::{Bsdf, IntegratorSpec, Plan, Reflector, Scene, SceneParts, ShapePart};
+use tpb_scene::{Bsdf, IntegratorSpec, Reflector, Scene, SceneParts, ShapePart};
 
 use super::stats::{film, pass};
 use super::worlds::{
     ball, camera, cuboid, diffuse, filled, glass, lamp, medium, plate, shape, time, tracer,
 };
-use crate::{PathOptions, PathTracer};
 
 fn wall(name: &str, centre: DVec3, u: DVec3, v: DVec3, reflectance: f64) -> ShapePart {
     shape(name, vec![plate(centre, u, v)], diffuse(Rgb::splat(reflectance)))
@@ -103,26 +99,4 @@ fn a_grey_scene_looks_the_same_in_one_channel_and_in_three() {
     let rgb = super::stats::estimate(&tracer::<3>(&scene, integrator, 50), 64, 32, sum);
     // False-alarm probability 1e-6.
     rgb.assert_agree(&mono, 1e-2, "channels");
-}
-
-#[test]
-#[ignore = "a measurement, not a test: run with --ignored --nocapture in release"]
-fn paths_per_second() {
-    let scene = blocks(64, 200);
-    let integrator = scene.integrator;
-    let plan = Plan::new(&scene, &integrator);
-    let tracer = PathTracer::<1>::new(&scene, &plan, integrator, &PathOptions::default());
-    let pool = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let mut film = film(&tracer);
-    pool.install(|| {
-        tracer.pass(PassId { seed: 1, index: 0 }, &mut film);
-        for index in 1..6 {
-            let start = Instant::now();
-            let report = tracer.pass(PassId { seed: 1, index }, &mut film);
-            let per_path = start.elapsed().as_secs_f64() / report.counts.camera_paths as f64;
-            let rate = 1e-6 / per_path;
-            writeln!(std::io::stderr(), "{:.0} ns per path, {rate:.3} M paths/s", per_path * 1e9)
-                .unwrap();
-        }
-    });
 }
