@@ -107,7 +107,7 @@ pub(crate) struct InfoArgs {
 }
 
 /// Scene and method.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct JobArgs {
     /// The scene file (JSON)
     pub(crate) scene: PathBuf,
@@ -134,7 +134,7 @@ pub(crate) struct JobArgs {
 }
 
 /// Options that belong to one method.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, PartialEq, Args)]
 pub(crate) struct MethodArgs {
     #[command(flatten)]
     pub(crate) beams: BeamArgs,

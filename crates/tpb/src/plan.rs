@@ -6,20 +6,37 @@ use std::process::ExitCode;
 use serde_json::{Value, json};
 use tpb_scene::Transport;
 
-use crate::cli::PlanArgs;
+use crate::cli::{JobArgs, MethodArg, MethodArgs, PlanArgs};
 use crate::failure::Failure;
-use crate::prepare::Job;
+use crate::prepare::{Job, MethodSpec};
 use crate::print;
 
-/// Prints the plan.
+/// Prints the plan: of the method that is asked for, else of both methods, the one that `render`
+/// would choose first.
 pub(crate) fn run(args: &PlanArgs) -> Result<ExitCode, Failure> {
     let job = Job::new(&args.job, &args.method)?;
-    let options = match job.plan.transport {
+    let options = options(&job)?;
+    if args.json {
+        return print::out_and_done(&as_json(&job, &options));
+    }
+    let mut text = as_text(&job, &options);
+    if args.job.method.is_none() && args.method == MethodArgs::default() {
+        let other = match job.method {
+            MethodSpec::Beams(_) => MethodArg::Path,
+            MethodSpec::Path(_) => MethodArg::Beams,
+        };
+        let job = Job::new(&JobArgs { method: Some(other), ..args.job.clone() }, &args.method)?;
+        text.push('\n');
+        text.push_str(&as_text(&job, &self::options(&job)?));
+    }
+    print::out_and_done(&text)
+}
+
+fn options(job: &Job) -> Result<Value, Failure> {
+    Ok(match job.plan.transport {
         Transport::Mono => job.method::<1>()?.options(),
         Transport::Rgb => job.method::<3>()?.options(),
-    };
-    let text = if args.json { as_json(&job, &options) } else { as_text(&job, &options) };
-    print::out_and_done(&text)
+    })
 }
 
 fn as_text(job: &Job, options: &Value) -> String {

@@ -30,6 +30,15 @@ fn plans() {
 }
 
 #[test]
+fn without_a_method_both_plans_are_shown_the_default_first() {
+    let file = "validation/scenes/cornell-blocks.json";
+    let plan = |more: &[&str]| stdout(&tpb(&root(), [&["plan", file], more].concat()));
+    let (path, beams) = (plan(&["--method", "path"]), plan(&["--method", "beams"]));
+    assert_eq!(plan(&[]), format!("{path}\n{beams}"));
+    assert_eq!(plan(&["--kernel", "2d", "--method", "beams"]).matches("method: ").count(), 1);
+}
+
+#[test]
 fn the_plan_as_json_says_the_same() {
     let output = tpb(&root(), ["plan", "validation/scenes/infinite-point.json", "--json"]);
     assert_done(&output);
