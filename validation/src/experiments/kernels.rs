@@ -26,6 +26,7 @@ use tpb_scene::MediumId;
 
 use crate::error::Result;
 use crate::experiment::{Context, Experiment, Outcome};
+use crate::experiments::marching::{bisect, covered_parts, gauss};
 
 /// Largest relative error of an energy.
 const TOLERANCE: f64 = 1e-9;
@@ -231,53 +232,6 @@ impl Pair {
                 .collect(),
         }
     }
-}
-
-/// The runs of `candidates` that are covered, their ends found by bisection.
-fn covered_parts(covered: &impl Fn(f64) -> bool, candidates: &[f64]) -> Vec<(f64, f64)> {
-    let mut parts = Vec::new();
-    let mut open = candidates.first().copied().filter(|&u| covered(u));
-    for ends in candidates.windows(2) {
-        match (covered(ends[0]), covered(ends[1])) {
-            (false, true) => open = Some(bisect(covered, ends[0], ends[1])),
-            (true, false) => {
-                let end = bisect(|u| !covered(u), ends[0], ends[1]);
-                parts.extend(open.take().map(|start| (start, end)));
-            }
-            _ => {}
-        }
-    }
-    parts.extend(open.zip(candidates.last().copied()));
-    parts
-}
-
-/// Where `after` turns true between `low` and `high`; one of these if it does not turn.
-fn bisect(after: impl Fn(f64) -> bool, mut low: f64, mut high: f64) -> f64 {
-    if after(low) {
-        return low;
-    }
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if after(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    high
-}
-
-/// Composite 3-point Gauss-Legendre over 200 panels.
-fn gauss(f: impl Fn(f64) -> f64, start: f64, end: f64) -> f64 {
-    let (panels, node) = (200, 0.6_f64.sqrt());
-    let half = 0.5 * (end - start) / f64::from(panels);
-    (0..panels)
-        .map(|i| {
-            let middle = start + half * f64::from(2 * i + 1);
-            let sides = f(middle - half * node) + f(middle + half * node);
-            half * (5.0 * sides + 8.0 * f(middle)) / 9.0
-        })
-        .sum()
 }
 
 /// The film's bins of a contribution, and its energy in f64.

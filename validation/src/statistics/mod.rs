@@ -8,7 +8,7 @@
 //! * [`agreement`]: the verdict on a set of contrasts with known expectations: *different*
 //!   (significant after Holm), *equivalent* (every confidence interval within the margin), or
 //!   *unresolved* (too noisy to tell, which is a failure for lack of power, never a pass).
-//! * [`chi_square`]: histograms against densities.
+//! * [`mod@chi_square`]: histograms against densities.
 //! * [`ratio`] and [`bootstrap`]: how many times better one method is than another.
 //! * [`split`]: the error of a cube, split into variance and squared bias without bias.
 //!
