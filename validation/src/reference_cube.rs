@@ -15,16 +15,13 @@
 //! | `opl_edges` | f8 (T + 1) | \[m\] |
 //! | `provenance` | u1 (N) | JSON: program, commit, scene, seed, passes, seconds |
 
-use std::fs::{self, File};
-use std::io::{self, BufReader};
+use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
 use half::f16;
-use npyz::npz::{NpzArchive, NpzWriter};
-use npyz::zip::{CompressionMethod, write::FileOptions};
-use npyz::{AutoSerialize, Deserialize as FromNpy, WriterBuilder};
 use serde::{Deserialize, Serialize};
+use tpb_film::archive::{ArchiveReader, ArchiveWriter, Compression};
 use tpb_film::{FilmOptions, TransientFilm, atomic_write};
 use tpb_path::PathOptions;
 use tpb_render::{Budget, RunSettings, Stopwatch, run};
@@ -117,42 +114,39 @@ impl ReferenceCube {
         let provenance = serde_json::to_vec(&self.provenance)
             .map_err(|error| ValidationError::unusable("provenance", error))?;
         atomic_write(path, |file| {
-            let mut npz = NpzWriter::new(file);
-            put(&mut npz, "transient", &[height, width, bins], &halves)?;
-            put(&mut npz, "scale", &[bins], &scale)?;
-            put(&mut npz, "mask", &[height, width], &mask)?;
-            put(&mut npz, "variance_pixel", &[height, width], &self.variance_pixel)?;
-            put(&mut npz, "variance_frame", &[bins], &self.variance_frame)?;
-            put(&mut npz, "opl_edges", &[bins + 1], &self.opl_edges)?;
-            put(&mut npz, "provenance", &[provenance.len()], &provenance)?;
-            npz.zip_writer().finish()?;
-            Ok(())
+            let mut npz = ArchiveWriter::new(file, Compression::Deflated);
+            npz.put("transient", &[height, width, bins], &halves)?;
+            npz.put("scale", &[bins], &scale)?;
+            npz.put("mask", &[height, width], &mask)?;
+            npz.put("variance_pixel", &[height, width], &self.variance_pixel)?;
+            npz.put("variance_frame", &[bins], &self.variance_frame)?;
+            npz.put("opl_edges", &[bins + 1], &self.opl_edges)?;
+            npz.put("provenance", &[provenance.len()], &provenance)?;
+            npz.finish()
         })?;
         Ok(())
     }
 
     /// Reads what [`ReferenceCube::write`] wrote.
     pub fn read(path: &Path) -> Result<Self> {
-        let file = File::open(path).map_err(|error| ValidationError::io(path, error))?;
-        let broken =
-            |error: io::Error| ValidationError::unusable(path.display().to_string(), error);
-        let mut npz = NpzArchive::new(BufReader::new(file)).map_err(broken)?;
-        let (shape, halves) = get::<f16>(&mut npz, "transient").map_err(broken)?;
+        let broken = |reason: &str| ValidationError::unusable(path.display().to_string(), reason);
+        let mut npz = ArchiveReader::open(path)?;
+        let (shape, halves) = npz.required::<f16>("transient", None)?;
         let &[height, width, bins] = shape.as_slice() else {
-            return Err(broken(io::Error::other("`transient` does not have 3 dimensions")));
+            return Err(broken("`transient` does not have 3 dimensions"));
         };
-        let scale = get::<f64>(&mut npz, "scale").map_err(broken)?.1;
-        let mask = get::<u8>(&mut npz, "mask").map_err(broken)?.1;
-        let variance_pixel = get::<f64>(&mut npz, "variance_pixel").map_err(broken)?.1;
-        let variance_frame = get::<f64>(&mut npz, "variance_frame").map_err(broken)?.1;
-        let opl_edges = get::<f64>(&mut npz, "opl_edges").map_err(broken)?.1;
-        let provenance = get::<u8>(&mut npz, "provenance").map_err(broken)?.1;
+        let scale = npz.required::<f64>("scale", None)?.1;
+        let mask = npz.required::<u8>("mask", None)?.1;
+        let variance_pixel = npz.required::<f64>("variance_pixel", None)?.1;
+        let variance_frame = npz.required::<f64>("variance_frame", None)?.1;
+        let opl_edges = npz.required::<f64>("opl_edges", None)?.1;
+        let provenance = npz.required::<u8>("provenance", None)?.1;
         let pixels = width * height;
         let fits = bins > 0
             && (scale.len(), variance_frame.len(), opl_edges.len()) == (bins, bins, bins + 1)
             && (mask.len(), variance_pixel.len()) == (pixels, pixels);
         if !fits {
-            return Err(broken(io::Error::other("arrays of different sizes")));
+            return Err(broken("arrays of different sizes"));
         }
         let mut cube = Cube::zero(width, height, bins);
         for (pixel, halves) in halves.chunks_exact(bins).enumerate() {
@@ -276,29 +270,6 @@ fn sees_no_emitter<const C: usize>(loaded: &LoadedScene) -> Result<Vec<bool>> {
     let lit: Vec<bool> =
         arrays.steady.chunks_exact(arrays.channels).map(|p| p.iter().any(|&v| v > 0.0)).collect();
     Ok(dilate(&lit, layout.width, layout.height).into_iter().map(|near| !near).collect())
-}
-
-fn put<T: AutoSerialize + Copy>(
-    npz: &mut NpzWriter<impl io::Write + io::Seek>,
-    name: &str,
-    shape: &[usize],
-    values: &[T],
-) -> io::Result<()> {
-    let options = FileOptions::default().compression_method(CompressionMethod::Deflated);
-    let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
-    let mut member = npz.array(name, options)?.default_dtype().shape(&shape).begin_nd()?;
-    member.extend(values.iter().copied())?;
-    member.finish()
-}
-
-fn get<T: FromNpy>(
-    npz: &mut NpzArchive<BufReader<File>>,
-    name: &str,
-) -> io::Result<(Vec<usize>, Vec<T>)> {
-    let missing = || io::Error::other(format!("has no array `{name}`"));
-    let member = npz.by_name(name)?.ok_or_else(missing)?;
-    let shape = member.shape().iter().map(|&n| n as usize).collect();
-    Ok((shape, member.into_vec()?))
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 //! [`TransientFilm`] averages passes. The invariant everywhere, to rounding:
 //! sum over bins + before + after = steady image.
 
+pub mod archive;
 mod arrays;
 mod arrival;
 mod atomic;
