@@ -57,7 +57,7 @@ pub(crate) struct ReferenceRenderArgs {
     /// Name of a shipped scene
     #[arg(long, default_value = "cornell-blocks")]
     scene: String,
-    /// Wall time [s]
+    /// Wall time in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0)]
     time: f64,
     /// Seed; equal-time runs use others

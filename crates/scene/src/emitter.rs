@@ -89,8 +89,9 @@ pub struct Incident<const C: usize> {
     pub direction: DVec3,
     /// Distance \[m\].
     pub distance: f64,
-    /// Radiance·solid angle, divided by nothing: for area emitters L·cosθ/d² \[W m⁻² sr⁻¹/m²\],
-    /// else I/d² \[W/m²\]; divide by [`LightPoint::pdf`].
+    /// What arrives per unit of the measure that [`LightPoint::pdf`] is a density of: divided by
+    /// it, irradiance across the direction. Area emitters: L·cosθ/d² \[W m⁻² per m² of emitter\];
+    /// points: I/d² \[W/m²\].
     pub flux: Spectrum<C>,
     /// Density of the choice per steradian at the receiving point; infinite for points.
     pub pdf_solid_angle: f64,

@@ -15,6 +15,7 @@ pub mod geometry;
 pub mod load;
 mod medium;
 mod plan;
+mod probe;
 mod sensor;
 mod world;
 

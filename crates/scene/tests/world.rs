@@ -122,6 +122,46 @@ fn contradictions_are_refused() {
 }
 
 #[test]
+fn a_place_on_a_boundary_has_no_region() {
+    let fog_ball = || inside(sphere("fog ball", DVec3::ZERO, 2.0, Bsdf::Null), FOG, None);
+    let on = DVec3::new(0.0, 0.0, 2.0);
+    for (eye, lamp) in [(on, DVec3::ZERO), (DVec3::ZERO, on)] {
+        let Err(error) = assemble(eye, lamp, vec![fog_ball()]) else { panic!("on the boundary") };
+        assert!(matches!(error, AssembleError::OnBoundary { .. }), "{error}");
+    }
+    let beside = on * (1.0 + 1e-6);
+    let scene = assemble(beside, beside / 1.000_002, vec![fog_ball()]).unwrap();
+    assert_eq!(scene.sensor.region, Region::VACUUM);
+    assert_eq!(scene.emitters[0].region.medium, Some(FOG));
+}
+
+#[test]
+fn a_boundary_in_the_same_place_as_a_wall_is_refused() {
+    let plate = |name: &str, bsdf, z: f64| ShapePart {
+        primitives: vec![Primitive::Planar(Planar::new(
+            DVec3::new(0.0, 0.0, z),
+            DVec3::X,
+            DVec3::Y,
+            Outline::Parallelogram,
+        ))],
+        ..sphere(name, DVec3::ZERO, 1.0, bsdf)
+    };
+    let eye = DVec3::new(0.0, 0.0, 9.0);
+    let fog = |z| inside(plate("fog", Bsdf::Null, z), FOG, None);
+    let Err(error) = assemble(eye, eye, vec![fog(1.0), plate("wall", WALL, 1.0)]) else {
+        panic!("which is first?")
+    };
+    assert!(matches!(error, AssembleError::Coincident { .. }), "{error}");
+    assert!(assemble(eye, eye, vec![fog(1.0), plate("wall", WALL, 0.999)]).is_ok());
+    // Two balls of the same surface.
+    let ball = |name: &str, bsdf| sphere(name, DVec3::ZERO, 2.0, bsdf);
+    let Err(error) = assemble(eye, eye, vec![ball("a", glass(1.5, 1.0)), ball("b", WALL)]) else {
+        panic!("which is first?")
+    };
+    assert!(matches!(error, AssembleError::Coincident { .. }), "{error}");
+}
+
+#[test]
 fn a_flight_keeps_every_span_and_its_optical_length() {
     let fog_ball = inside(sphere("fog ball", DVec3::ZERO, 2.0, Bsdf::Null), FOG, None);
     let wall = ShapePart {

@@ -91,6 +91,13 @@ impl<'a> Builder<'a> {
             AssembleError::MediumIndex { .. } => {
                 "`int_ior` is the index opposite to the normal, `ext_ior` the one on its side"
             }
+            AssembleError::OnBoundary { .. } => {
+                "move it to one side; a point in space may also name its `medium`"
+            }
+            AssembleError::Coincident { .. } => {
+                "move or shrink one of them; a medium that walls close in needs no boundary of its \
+                 own: make it the `background`"
+            }
             AssembleError::NullBetweenUnequalIndices { .. } => {
                 "light bends where the index changes: use a `dielectric` there"
             }
