@@ -195,7 +195,7 @@ impl EqualTimePlan<'_> {
             wall_seconds: summary.wall_seconds,
             cpu_seconds: summary.cpu_seconds.unwrap_or(summary.wall_seconds),
             passes: summary.passes,
-            counts: summary.report.counts,
+            counts: summary.counts,
             rmse: 0.0,
             nmse: 0.0,
             nmse_whole: 0.0,

@@ -243,7 +243,7 @@ fn make<const C: usize>(
         scene: loaded.canonical.clone(),
         seed,
         passes: summary.passes,
-        camera_paths: summary.report.counts.camera_paths,
+        camera_paths: summary.counts.camera_paths,
         wall_seconds: summary.wall_seconds,
         cpu_seconds: summary.cpu_seconds,
     };

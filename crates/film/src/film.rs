@@ -162,13 +162,24 @@ impl<const C: usize> TransientFilm<C> {
         results.into_iter().map(|r| r.0).collect()
     }
 
-    /// Relative standard error of the steady image: √(Σ variance of the mean / Σ mean²) over
-    /// pixels and channels. `None` under two passes or for a black image.
+    /// Median relative error of a pixel of the steady image, over pixels whose mean is positive
+    /// (of an even number of them, the upper of the middle two). A pixel's error is the sum over
+    /// kept channels of the standard error of the mean, divided by the sum of the means: exact for
+    /// one channel and for channels that vary together, else an upper bound for their sum. `None`
+    /// under two passes or for a black image.
     pub fn relative_error(&self) -> Option<f64> {
         let factor = variance_factor(self.passes)?;
-        let variance = factor * self.steady_squares.iter().sum::<f64>();
-        let power: f64 = self.steady_mean.iter().map(|m| m * m).sum();
-        (power > 0.0).then(|| (variance / power).sqrt())
+        let kept = Self::kept(self.options.output);
+        let pixels =
+            self.steady_mean.chunks_exact(kept).zip(self.steady_squares.chunks_exact(kept));
+        let lit = pixels.filter_map(|(means, squares)| {
+            let mean: f64 = means.iter().sum();
+            let error: f64 = squares.iter().map(|s| (factor * s).sqrt()).sum();
+            (mean > 0.0).then(|| error / mean)
+        });
+        let mut errors: Vec<f64> = lit.collect();
+        let middle = errors.len() / 2;
+        (!errors.is_empty()).then(|| *errors.select_nth_unstable_by(middle, f64::total_cmp).1)
     }
 
     /// Channels that leave the film.

@@ -3,12 +3,12 @@
 //! emitted = absorbed in media + absorbed on surfaces + escaped + cut by depth
 //!         + (lost − gained by Russian roulette),
 //!
-//! all in watts (joules for a pulse whose energies are in joules), weighted to luminance. Whoever
-//! traces light fills it; [`Ledger::closure`] says how well it closes, 1e-9 being the aim.
+//! all weighted to luminance: of light in watts (joules for pulses), where light is traced, or of
+//! importance in camera paths, where paths start at the camera. Whoever traces fills it; [`Ledger::closure`] says how well it closes, 1e-9 being the aim.
 
 use serde::{Deserialize, Serialize};
 
-/// The balance; all entries are luminance-weighted power \[W\].
+/// The balance; all entries are luminance-weighted, and of the same unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ledger {
@@ -40,6 +40,21 @@ impl Ledger {
         self.roulette_gained += other.roulette_gained;
     }
 
+    /// The mean over so many balances that were added.
+    #[must_use]
+    pub fn mean(&self, count: u64) -> Self {
+        let count = count.max(1) as f64;
+        Self {
+            emitted: self.emitted / count,
+            absorbed_in_media: self.absorbed_in_media / count,
+            absorbed_on_surfaces: self.absorbed_on_surfaces / count,
+            escaped: self.escaped / count,
+            cut_by_depth: self.cut_by_depth / count,
+            roulette_lost: self.roulette_lost / count,
+            roulette_gained: self.roulette_gained / count,
+        }
+    }
+
     /// Relative imbalance, (emitted − accounted for)/emitted; with nothing emitted, 0 if nothing
     /// is accounted for and infinite otherwise.
     pub fn closure(&self) -> f64 {
@@ -69,6 +84,8 @@ mod tests {
             sum.add(&part);
         }
         assert!(sum.emitted == 7.0 && sum.closure() == 0.0, "{sum:?}");
+        let mean = sum.mean(2);
+        assert!(mean.emitted == 3.5 && mean.closure() == 0.0, "{mean:?}");
         sum.escaped += 0.7;
         assert!((sum.closure() + 0.1).abs() < 1e-15, "light from nowhere shows");
         let nothing_emitted = Ledger { escaped: 1.0, ..Ledger::default() };

@@ -71,6 +71,10 @@ impl<const C: usize> Method<C> for PathTracer<'_, C> {
         serde_json::json!({ "samples_per_pass": self.samples })
     }
 
+    fn carrier(&self) -> &'static str {
+        "importance [camera paths]"
+    }
+
     fn pass(&self, id: PassId, film: &mut TransientFilm<C>) -> PassReport {
         let layout = *film.layout();
         let mut report = PassReport::default();

@@ -25,4 +25,6 @@ pub use job::{FilmSetup, RenderOptions};
 pub use memory::{amount, peak_memory};
 pub use method::{Counts, Method, PassId, PassReport};
 pub use report::{FilmRecord, MethodRecord, Outcome, Rates, Report, SceneRecord};
-pub use run::{Control, Milestone, Progress, RunSettings, RunSummary, run, with_threads};
+pub use run::{
+    Control, LedgerRecord, Milestone, Progress, RunSettings, RunSummary, run, with_threads,
+};

@@ -24,15 +24,20 @@ pub trait Method<const C: usize>: Sync {
     /// Its effective options, defaults filled in, as they go into the report.
     fn options(&self) -> serde_json::Value;
 
+    /// What its ledger balances, with the unit.
+    fn carrier(&self) -> &'static str {
+        "light [W]"
+    }
+
     /// Adds one pass — one independent, complete estimate of the image — to the film, with exactly
     /// one call of [`TransientFilm::add_pass`].
     fn pass(&self, id: PassId, film: &mut TransientFilm<C>) -> PassReport;
 }
 
 /// What happened in a pass, or summed over passes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PassReport {
-    /// Where the light (photons) or the importance (camera paths) went.
+    /// Where the method's carrier went, see [`Method::carrier`].
     pub ledger: Ledger,
     /// How much work was done.
     pub counts: Counts,

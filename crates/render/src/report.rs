@@ -28,7 +28,7 @@ pub struct Report {
     pub run: RunSummary,
     /// Work per second.
     pub rates: Rates,
-    /// Relative imbalance of the light ledger; `None` for methods that emit no light.
+    /// Relative imbalance of the ledger of the run; `None` where it is empty.
     pub ledger_closure: Option<f64>,
     /// Contributions that were not finite and were kept out; 0 in a sound render.
     pub non_finite: u64,
@@ -120,7 +120,7 @@ pub struct Rates {
 impl Rates {
     /// Of a run.
     pub fn new(run: &RunSummary) -> Self {
-        let counts = &run.report.counts;
+        let counts = &run.counts;
         Self {
             camera_paths_per_second: run.per_second(counts.camera_paths),
             photon_paths_per_second: run.per_second(counts.photon_paths),
@@ -136,7 +136,7 @@ pub struct Outcome<'a> {
     pub scene: SceneRecord,
     /// How.
     pub method: MethodRecord,
-    /// What the scene needs.
+    /// What the scene needs, of this method.
     pub plan: &'a Plan,
     /// What the run did.
     pub run: RunSummary,
@@ -152,7 +152,7 @@ impl Report {
     /// The report of a render. `program` is its name and version.
     pub fn new(program: &str, options: RenderOptions, outcome: Outcome<'_>) -> Self {
         let Outcome { scene, method, plan, run, non_finite, arrays, pulse } = outcome;
-        let ledger_closure = closure(&run.report.ledger);
+        let ledger_closure = closure(&run.ledger.mean_of_a_pass);
         let mut report = Self {
             program: program.to_owned(),
             scene,
@@ -168,11 +168,12 @@ impl Report {
             warnings: Vec::new(),
             plan: serde_json::to_value(plan).unwrap_or_default(),
         };
-        report.warnings = report.find_warnings();
+        report.warnings = lost_light(plan);
+        report.warnings.extend(report.find_warnings());
         report
     }
 
-    /// Whether nothing was kept out and the light ledger closes.
+    /// Whether nothing was kept out and the ledger closes.
     pub fn is_sound(&self) -> bool {
         self.non_finite == 0 && self.ledger_closure.is_none_or(|c| c.abs() <= LEDGER_TOLERANCE)
     }
@@ -186,7 +187,10 @@ impl Report {
             ));
         }
         if let Some(closure) = self.ledger_closure.filter(|c| c.abs() > LEDGER_TOLERANCE) {
-            warnings.push(format!("the light ledger does not close: off by {closure:.1e}"));
+            warnings.push(format!(
+                "the ledger of {} does not close: off by {closure:.1e}",
+                self.run.ledger.carrier
+            ));
         }
         if self.options.variance && self.options.pulse != Pulse::Delta {
             warnings.push("no variance: it is known for the delta pulse only".to_owned());
@@ -200,6 +204,12 @@ impl Report {
     }
 }
 
+/// What of the light the method leaves out.
+fn lost_light(plan: &Plan) -> Vec<String> {
+    let lost = plan.left_out.iter().filter(|item| item.loses_light);
+    lost.map(|item| format!("the image lacks {}: {}", item.part, item.reason)).collect()
+}
+
 /// How far the ledger is from closing, if there is any light in it.
 fn closure(ledger: &Ledger) -> Option<f64> {
     (*ledger != Ledger::default()).then(|| ledger.closure())
@@ -208,17 +218,15 @@ fn closure(ledger: &Ledger) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PassReport;
+    use crate::{Counts, LedgerRecord};
 
     fn report(ledger: Ledger, non_finite: u64, options: RenderOptions) -> Report {
         let run = RunSummary {
             passes: 1,
             wall_seconds: 3.0,
             setup_seconds: 1.0,
-            report: PassReport {
-                ledger,
-                counts: crate::Counts { camera_paths: 100, ..crate::Counts::default() },
-            },
+            counts: Counts { camera_paths: 100, ..Counts::default() },
+            ledger: LedgerRecord { carrier: "light [W]".to_owned(), mean_of_a_pass: ledger },
             interrupted: true,
             ..RunSummary::default()
         };

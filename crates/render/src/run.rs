@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use tpb_film::TransientFilm;
+use tpb_film::{Ledger, TransientFilm};
 
-use crate::{Budget, Method, PassId, PassReport, RenderError, Stopwatch};
+use crate::{Budget, Counts, Method, PassId, PassReport, RenderError, Stopwatch};
 
 /// Which passes a run makes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -68,14 +68,26 @@ pub struct RunSummary {
     pub cpu_seconds: Option<f64>,
     /// The part of the wall time that went before the first pass: preparation of the method \[s\].
     pub setup_seconds: f64,
-    /// Work and light of all passes.
-    pub report: PassReport,
-    /// Relative standard error of the steady image at the end, from two passes on.
+    /// Work of all passes.
+    pub counts: Counts,
+    /// Where the light or the importance of a pass went.
+    pub ledger: LedgerRecord,
+    /// [`TransientFilm::relative_error`] at the end, from two passes on.
     pub relative_error: Option<f64>,
     /// The same after 2, 4, 8, … passes.
     pub history: Vec<Milestone>,
     /// Whether it was asked to end before its budget was used up.
     pub interrupted: bool,
+}
+
+/// Where the light or the importance of a pass went, on average over the passes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LedgerRecord {
+    /// What it balances, with the unit: [`Method::carrier`].
+    pub carrier: String,
+    /// The balance.
+    pub mean_of_a_pass: Ledger,
 }
 
 /// A point of a run's convergence.
@@ -86,7 +98,7 @@ pub struct Milestone {
     pub passes: u64,
     /// Wall time so far \[s\].
     pub wall_seconds: f64,
-    /// Relative standard error of the steady image.
+    /// [`TransientFilm::relative_error`].
     pub relative_error: f64,
 }
 
@@ -104,6 +116,7 @@ pub fn run<const C: usize>(
 ) -> RunSummary {
     let setup = started.wall();
     let mut summary = RunSummary { setup_seconds: setup.as_secs_f64(), ..RunSummary::default() };
+    let mut total = PassReport::default();
     let (mut elapsed, mut mean) = (setup, Duration::ZERO);
     while settings.budget.allows_another(summary.passes, elapsed, mean) {
         if summary.passes > 0 && control.interrupted() {
@@ -112,7 +125,7 @@ pub fn run<const C: usize>(
         }
         let index = settings.first_pass.wrapping_add(summary.passes);
         let report = method.pass(PassId { seed: settings.seed, index }, film);
-        summary.report.add(&report);
+        total.add(&report);
         summary.passes += 1;
         elapsed = started.wall();
         mean = elapsed.saturating_sub(setup).div_f64(summary.passes as f64);
@@ -125,6 +138,9 @@ pub fn run<const C: usize>(
             relative_error: summary.relative_error,
         });
     }
+    summary.counts = total.counts;
+    let mean_of_a_pass = total.ledger.mean(summary.passes);
+    summary.ledger = LedgerRecord { carrier: method.carrier().to_owned(), mean_of_a_pass };
     summary.wall_seconds = elapsed.as_secs_f64();
     summary.cpu_seconds = started.cpu().map(|cpu| cpu.as_secs_f64());
     summary

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use tpb_film::{Arrival, FilmOptions, Layout, TimeAxis, TransientFilm};
+use tpb_film::{Arrival, FilmOptions, Layout, Ledger, TimeAxis, TransientFilm};
 use tpb_optics::{Spectrum, Stream};
 use tpb_render::{
     Budget, Control, Counts, Method, PassId, PassReport, Progress, RunSettings, RunSummary,
@@ -35,7 +35,8 @@ impl Method<1> for Noise {
             strip.pixels().len() as u64
         });
         let counts = Counts { camera_paths: strips.iter().sum(), ..Counts::default() };
-        PassReport { counts, ..PassReport::default() }
+        let ledger = Ledger { emitted: 2.0, escaped: 2.0, ..Ledger::default() };
+        PassReport { counts, ledger }
     }
 }
 
@@ -77,7 +78,9 @@ fn a_run_may_be_continued() {
     let mut whole = film();
     let summary = go(&QUICK, &mut whole, &passes(0, 9), &mut ());
     assert_eq!((summary.passes, summary.interrupted), (9, false));
-    assert_eq!(summary.report.counts.camera_paths, 9 * 50 * 40);
+    assert_eq!(summary.counts.camera_paths, 9 * 50 * 40);
+    assert_eq!(summary.ledger.mean_of_a_pass.emitted, 2.0, "not of all passes");
+    assert_eq!(summary.ledger.carrier, "light [W]");
     assert_eq!(summary.relative_error, whole.relative_error());
     let at: Vec<u64> = summary.history.iter().map(|milestone| milestone.passes).collect();
     assert_eq!(at, [2, 4, 8]);

@@ -40,12 +40,13 @@ pub(crate) fn of_report(lines: &mut Lines, report: &Report) {
     lines.add("time", &time(run));
     lines.add("rate", &rates(report));
     let error = match run.relative_error {
-        Some(error) => format!("{:.3} % of the steady image", 100.0 * error),
+        Some(error) => format!("{:.3} %, median of the lit pixels' steady values", 100.0 * error),
         None => "unknown: it needs two passes and some light".to_owned(),
     };
     lines.add("relative error", &error);
     if let Some(closure) = report.ledger_closure {
-        lines.add("light ledger", &format!("closes to {:.1e}", closure.abs()));
+        let carrier = &run.ledger.carrier;
+        lines.add("ledger", &format!("of {carrier} closes to {:.1e}", closure.abs()));
     }
     lines.add("not finite", &report.non_finite.to_string());
     if report.pulse.relative_error_bound > 0.0 {

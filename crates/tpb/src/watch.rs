@@ -68,8 +68,8 @@ impl Control for Watch {
             Budget::Passes(_) => passes,
             Budget::Time(time) => milliseconds(elapsed.min(time)),
         });
-        let error =
-            relative_error.map_or_else(String::new, |e| format!(", error {:.3} %", 100.0 * e));
+        let error = relative_error
+            .map_or_else(String::new, |e| format!(", median error of a pixel {:.3} %", 100.0 * e));
         let left = HumanDuration(remaining);
         let plural = if passes == 1 { "" } else { "es" };
         self.bar.set_message(format!("{passes} pass{plural}{error}, {left:#} left"));
