@@ -7,9 +7,11 @@
 use std::fmt;
 
 use serde::Serialize;
-use tpb_optics::Rgb;
+use tpb_optics::{Coefficients, Rgb};
 
-use crate::{Bsdf, EmitterKind, IntegratorSpec, MethodName, PixelFormat, Scene, TimeSpec};
+use crate::{
+    Bsdf, EmitterKind, IntegratorSpec, MethodName, PixelFormat, Reflector, Scene, TimeSpec,
+};
 
 /// What a render of a scene needs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,6 +29,8 @@ pub struct Plan {
     pub diffuse: Vec<String>,
     /// Emitters that a camera's path cannot connect to.
     pub unconnectable: Vec<String>,
+    /// Why light may never end, so that paths need a limit of depth; empty if it always ends.
+    pub endless: Vec<String>,
     /// Photon beams are traced and gathered.
     pub beams: bool,
     /// Photons are kept on diffuse surfaces.
@@ -83,10 +87,15 @@ pub struct Item {
     pub part: String,
     /// Why it is needed or not.
     pub reason: String,
+    /// Whether light is missing from the image because this part is left out.
+    pub loses_light: bool,
     /// The only method that it concerns; `None` concerns all.
     #[serde(skip)]
     pub only: Option<MethodName>,
 }
+
+/// Whether a part is needed (`Ok`) or left out (`Err`), each with the reason.
+type Decision = Result<String, String>;
 
 impl Plan {
     /// Looks at the scene, with the depths that this run uses.
@@ -94,38 +103,29 @@ impl Plan {
         let named = |wanted: &dyn Fn(&Bsdf) -> bool| -> Vec<String> {
             scene.shapes.iter().filter(|s| wanted(&s.bsdf)).map(|s| s.name.clone()).collect()
         };
-        let refracting = named(&|b| matches!(b, Bsdf::Dielectric(_)));
-        let mirrors = named(&Bsdf::is_mirror);
-        let diffuse = named(&Bsdf::scatters_diffusely);
-        let media = media(scene);
-        let lit = !scene.power().is_zero();
-        let scattering = media == Media::Scattering;
-        let specular = !(refracting.is_empty() && mirrors.is_empty());
-        let beams = lit && scattering && integrator.reaches(2);
-        let indirect = scattering || specular || !diffuse.is_empty();
-        // Next-event estimation owns direct light, except a laser's.
-        let least_depth = if unconnectable(scene).is_empty() { 3 } else { 2 };
-        let surface_photons =
-            lit && !diffuse.is_empty() && indirect && integrator.reaches(least_depth);
-        let connectable = scene.emitters.iter().any(|e| e.kind.can_be_connected());
         let mut plan = Self {
             transport: if is_chromatic(scene) { Transport::Rgb } else { Transport::Mono },
-            media,
-            unconnectable: unconnectable(scene),
-            beams,
-            surface_photons,
-            next_event_estimation: connectable
-                && (scattering || !diffuse.is_empty())
-                && integrator.reaches(2),
+            media: media(scene),
+            refracting: named(&|b| matches!(b, Bsdf::Dielectric(_))),
+            mirrors: named(&Bsdf::is_mirror),
+            diffuse: named(&Bsdf::scatters_diffusely),
+            unconnectable: emitters(scene, |kind| !kind.can_be_connected()),
+            endless: endless(scene),
+            beams: false,
+            surface_photons: false,
+            next_event_estimation: false,
             kernel: kernel(scene),
             time_bins: scene.film.time.is_some(),
-            refracting,
-            mirrors,
-            diffuse,
             needs: vec![],
             left_out: vec![],
         };
-        plan.explain(scene, integrator);
+        plan.decide_channels(scene);
+        plan.decide_media(scene);
+        plan.decide_beams(scene, integrator);
+        plan.decide_surfaces(scene, integrator);
+        plan.decide_connections(scene, integrator);
+        plan.tell_lost_light(scene, integrator);
+        plan.tell_time(scene);
         plan
     }
 
@@ -138,119 +138,161 @@ impl Plan {
         self
     }
 
-    fn explain(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
-        self.explain_channels(scene);
-        self.explain_media(scene, integrator);
-        self.explain_surfaces(scene, integrator);
-        match scene.film.time {
-            Some(TimeSpec { start_opl, bin_width_opl, bins }) => self.need(
-                "time bins",
-                format!(
-                    "{bins} bins of {bin_width_opl} m from {start_opl} m, and two cells beside"
-                ),
-            ),
-            None => self.omit("time bins", "the film has no time axis".to_owned()),
-        }
-    }
-
-    fn explain_channels(&mut self, scene: &Scene) {
-        match (self.transport, scene.film.pixel_format) {
-            (Transport::Mono, PixelFormat::Luminance) => {
-                self.need("one channel", "the scene is achromatic".to_owned());
-                self.omit("two more channels", "the scene is achromatic".to_owned());
-            }
-            (Transport::Mono, PixelFormat::Rgb) => {
-                self.need("one channel", "the scene is achromatic; written three times".to_owned());
-                self.omit("two more channels", "the scene is achromatic".to_owned());
-            }
-            (Transport::Rgb, PixelFormat::Rgb) => {
-                self.need("three channels", "the scene has colour".to_owned());
-            }
+    fn decide_channels(&mut self, scene: &Scene) {
+        let reason = match (self.transport, scene.film.pixel_format) {
+            (Transport::Mono, PixelFormat::Luminance) => "the scene is achromatic",
+            (Transport::Mono, PixelFormat::Rgb) => "the scene is achromatic; written three times",
+            (Transport::Rgb, PixelFormat::Rgb) => "the scene has colour",
             (Transport::Rgb, PixelFormat::Luminance) => {
-                let reason = "the scene has colour; the film keeps its luminance";
-                self.need("three channels", reason.to_owned());
+                "the scene has colour; the film keeps its luminance"
             }
+        };
+        let channels = match self.transport {
+            Transport::Mono => "one channel",
+            Transport::Rgb => "three channels",
+        };
+        self.note(None, channels, Ok(reason.to_owned()));
+        if self.transport == Transport::Mono {
+            self.note(None, "two more channels", Err("the scene is achromatic".to_owned()));
         }
     }
 
-    fn explain_media(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
+    fn decide_media(&mut self, scene: &Scene) {
         let names = scene.media.iter().map(|m| m.name.as_str()).collect::<Vec<_>>().join(", ");
-        match self.media {
-            Media::None => self.omit("media", "vacuum everywhere".to_owned()),
-            Media::Absorbing => self.need("transmittance", format!("media: {names}")),
-            Media::Scattering => {
-                self.need("transmittance and scattering", format!("media: {names}"));
-            }
-        }
+        let (part, decision) = match self.media {
+            Media::None => ("media", Err("vacuum everywhere".to_owned())),
+            Media::Absorbing => ("transmittance", Ok(format!("media: {names}"))),
+            Media::Scattering => ("transmittance and scattering", Ok(format!("media: {names}"))),
+        };
+        self.note(None, part, decision);
+    }
+
+    fn decide_beams(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
+        let decision = if self.media != Media::Scattering {
+            Err("no medium scatters light")
+        } else if scene.power().is_zero() {
+            Err("the scene has no light")
+        } else if !integrator.reaches(2) {
+            Err("max_depth leaves no scattering")
+        } else {
+            Ok("a medium scatters light")
+        };
+        self.beams = self.note(Some(MethodName::Beams), "photon beams", owned(decision));
         if self.beams {
             let (kernel, why) = match self.kernel {
-                Kernel::OneD => ("1D", "spread directions: no temporal blur, finite variance"),
-                Kernel::TwoD => {
-                    ("2D", "a laser lies along the view, where 1/sin of the 1D kernel diverges")
+                Kernel::TwoD => (
+                    "2D kernel",
+                    "a laser lies along the view, where 1/sin of the 1D kernel diverges",
+                ),
+                Kernel::OneD if self.unconnectable.is_empty() => {
+                    ("1D kernel", "spread directions: no temporal blur, finite variance")
                 }
+                Kernel::OneD => (
+                    "1D kernel",
+                    "no temporal blur; sound unless laser light is turned along the view",
+                ),
             };
-            self.need("photon beams", "a medium scatters light".to_owned());
-            self.need(&format!("{kernel} kernel"), why.to_owned());
-        } else if self.media != Media::Scattering {
-            self.omit("photon beams", "no medium scatters light".to_owned());
-        } else if integrator.reaches(2) {
-            self.omit("photon beams", "the scene has no light".to_owned());
-        } else {
-            self.omit("photon beams", "max_depth leaves no scattering".to_owned());
+            self.note(Some(MethodName::Beams), kernel, Ok(why.to_owned()));
         }
     }
 
-    fn explain_surfaces(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
-        let specular = [self.refracting.clone(), self.mirrors.clone()].concat();
-        if specular.is_empty() {
-            self.omit("specular chains", "no mirror and no refracting boundary".to_owned());
+    fn decide_surfaces(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
+        let specular = [&self.refracting[..], &self.mirrors].concat().join(", ");
+        self.note(
+            None,
+            "specular chains",
+            if specular.is_empty() {
+                Err("no mirror and no refracting boundary".to_owned())
+            } else {
+                Ok(format!("shapes: {specular}"))
+            },
+        );
+        // Next-event estimation owns direct light, except a laser's.
+        let least_depth = if self.unconnectable.is_empty() { 3 } else { 2 };
+        let decision = if self.diffuse.is_empty() {
+            Err("no surface scatters diffusely".to_owned())
+        } else if scene.power().is_zero() {
+            Err("the scene has no light".to_owned())
+        } else if !integrator.reaches(least_depth) {
+            Err("max_depth leaves no light for them".to_owned())
         } else {
-            self.need("specular chains", format!("shapes: {}", specular.join(", ")));
-        }
-        if self.surface_photons {
-            self.need("surface photons", format!("diffuse shapes: {}", self.diffuse.join(", ")));
-        } else if self.diffuse.is_empty() {
-            self.omit("surface photons", "no surface scatters diffusely".to_owned());
-        } else if integrator.reaches(3) {
-            self.omit("surface photons", "the scene has no light".to_owned());
+            Ok(format!("diffuse shapes: {}", self.diffuse.join(", ")))
+        };
+        self.surface_photons = self.note(Some(MethodName::Beams), "surface photons", decision);
+    }
+
+    /// Beams connect at surfaces only, the path tracer in media too.
+    fn decide_connections(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
+        let part = "next-event estimation";
+        let (surfaces, media) = (!self.diffuse.is_empty(), self.media == Media::Scattering);
+        let decision = if emitters(scene, EmitterKind::can_be_connected).is_empty() {
+            Err("no emitter that a path can connect to")
+        } else if !integrator.reaches(2) {
+            Err("max_depth leaves no scattering")
+        } else if !surfaces && !media {
+            Err("nothing scatters")
         } else {
-            self.omit("surface photons", "max_depth leaves no indirect light".to_owned());
+            Ok("emitters that a path can connect to")
+        };
+        let only = (decision.is_ok() && !surfaces).then_some(MethodName::Path);
+        self.next_event_estimation = self.note(only, part, owned(decision));
+        if only.is_some() {
+            let reason = "no surface scatters diffusely; in media, beams bring all light";
+            self.note(Some(MethodName::Beams), part, Err(reason.to_owned()));
         }
-        if self.next_event_estimation {
-            self.need("next-event estimation", "emitters that a path can connect to".to_owned());
-        } else {
-            self.omit(
-                "next-event estimation",
-                "nothing scatters, or no emitter to connect to".into(),
-            );
-        }
-        if !self.unconnectable.is_empty() {
+    }
+
+    /// Light that a path from the camera cannot find.
+    fn tell_lost_light(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
+        let seen = !self.diffuse.is_empty() || self.media == Media::Scattering;
+        if seen && integrator.reaches(2) && !self.unconnectable.is_empty() {
             let names = self.unconnectable.join(", ");
-            self.omit(
-                "light of collimated emitters in the path tracer",
-                format!("a path cannot connect to: {names}; photon beams render it"),
-            );
+            self.lose("light of lasers", format!("no path can connect to: {names}"));
         }
-        let points = scene
-            .emitters
-            .iter()
-            .any(|e| matches!(e.kind, EmitterKind::Point { .. } | EmitterKind::Spot { .. }));
-        if points && !specular.is_empty() {
-            self.omit(
-                "caustics of point and spot emitters in the path tracer",
-                "no path can hit a point through a specular boundary; photon beams render them"
-                    .into(),
-            );
+        let points = emitters(scene, |kind| {
+            matches!(kind, EmitterKind::Point { .. } | EmitterKind::Spot { .. })
+        });
+        let specular = !(self.refracting.is_empty() && self.mirrors.is_empty());
+        if seen && integrator.reaches(3) && specular && !points.is_empty() {
+            let names = points.join(", ");
+            let reason = format!("no path can hit a point by a mirror or through glass: {names}");
+            self.lose("caustics of points and spots", reason);
         }
     }
 
-    fn need(&mut self, part: &str, reason: String) {
-        self.needs.push(item(part, reason));
+    fn tell_time(&mut self, scene: &Scene) {
+        let decision = match scene.film.time {
+            Some(TimeSpec { start_opl, bin_width_opl, bins }) => Ok(format!(
+                "{bins} bins of {bin_width_opl} m from {start_opl} m, and two cells beside"
+            )),
+            None => Err("the film has no time axis".to_owned()),
+        };
+        self.note(None, "time bins", decision);
     }
 
-    fn omit(&mut self, part: &str, reason: String) {
-        self.left_out.push(item(part, reason));
+    /// Writes a decision down, and says whether the part is needed.
+    fn note(&mut self, only: Option<MethodName>, part: &str, decision: Decision) -> bool {
+        let needed = decision.is_ok();
+        let (Ok(reason) | Err(reason)) = decision;
+        let item = Item { part: part.to_owned(), reason, loses_light: false, only };
+        if needed {
+            self.needs.push(item)
+        } else {
+            self.left_out.push(item)
+        }
+        needed
     }
+
+    /// Light that the path tracer leaves out and photon beams render.
+    fn lose(&mut self, part: &str, reason: String) {
+        let reason = format!("{reason}; photon beams render it");
+        let only = Some(MethodName::Path);
+        self.left_out.push(Item { part: part.to_owned(), reason, loses_light: true, only });
+    }
+}
+
+fn owned(decision: Result<&str, &str>) -> Decision {
+    decision.map(str::to_owned).map_err(str::to_owned)
 }
 
 impl fmt::Display for Plan {
@@ -263,16 +305,6 @@ impl fmt::Display for Plan {
         }
         Ok(())
     }
-}
-
-/// A line of the plan; what it concerns is told by its part.
-fn item(part: &str, reason: String) -> Item {
-    let only = match part {
-        "photon beams" | "1D kernel" | "2D kernel" | "surface photons" => Some(MethodName::Beams),
-        _ if part.ends_with("in the path tracer") => Some(MethodName::Path),
-        _ => None,
-    };
-    Item { part: part.to_owned(), reason, only }
 }
 
 fn media(scene: &Scene) -> Media {
@@ -292,9 +324,33 @@ fn is_chromatic(scene: &Scene) -> bool {
     media.chain(surfaces).chain(emitters).any(|c| !Rgb::is_achromatic(c))
 }
 
-fn unconnectable(scene: &Scene) -> Vec<String> {
-    let hidden = scene.emitters.iter().filter(|e| !e.kind.can_be_connected());
-    hidden.map(|e| e.name.clone()).collect()
+/// Names of the emitters of some kind that give light.
+fn emitters(scene: &Scene, wanted: impl Fn(&EmitterKind) -> bool) -> Vec<String> {
+    let found = scene.emitters.iter().filter(|e| wanted(&e.kind) && !e.kind.power().is_zero());
+    found.map(|e| e.name.clone()).collect()
+}
+
+/// Reflectances and albedos that take nothing from some channel.
+fn endless(scene: &Scene) -> Vec<String> {
+    let mut reasons = Vec::new();
+    for shape in &scene.shapes {
+        let Bsdf::Opaque { front, back } = shape.bsdf else { continue };
+        let full = [front, back].iter().any(|side| match side {
+            Reflector::Black => false,
+            Reflector::Diffuse(rho) | Reflector::Mirror(rho) => rho.max_channel() >= 1.0,
+        });
+        if full {
+            reasons.push(format!("shape '{}' reflects all light of a channel", shape.name));
+        }
+    }
+    for medium in &scene.media {
+        let Coefficients { sigma_s, sigma_t } = medium.coefficients;
+        if (0..3).any(|c| sigma_t[c] > 0.0 && sigma_s[c] >= sigma_t[c]) {
+            reasons
+                .push(format!("medium '{}' absorbs nothing of a channel (albedo 1)", medium.name));
+        }
+    }
+    reasons
 }
 
 /// A laser whose axis the camera looks along (either way) needs the 2D kernel.

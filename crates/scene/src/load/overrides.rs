@@ -34,7 +34,14 @@ impl Override {
         if path.iter().any(String::is_empty) {
             return Err(error("the path has an empty step"));
         }
-        let value = serde_json::from_str(value).unwrap_or_else(|_| Json::from(value));
+        let value = match serde_json::from_str(value) {
+            Ok(value) => value,
+            // Its errors have no kind to ask for.
+            Err(e) if e.to_string().starts_with("number out of range") => {
+                return Err(error("a number is out of range; the largest is 1.8e308"));
+            }
+            Err(_) => Json::from(value),
+        };
         Ok(Self { text: text.to_owned(), path, value })
     }
 

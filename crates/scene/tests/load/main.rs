@@ -2,6 +2,7 @@
 //! the promise that no input makes it panic.
 
 mod errors;
+mod plan;
 mod properties;
 mod vocabulary;
 

@@ -1,0 +1,97 @@
+//! What a plan decides, and why.
+
+use tpb_scene::{IntegratorSpec, Item, MethodName, Plan, Scene};
+
+use super::{cornell_with, parse, shipped_text};
+
+fn shipped(name: &str) -> Scene {
+    parse(&shipped_text(name)).unwrap().scene
+}
+
+fn cornell(changes: &[&str]) -> Scene {
+    cornell_with(changes).unwrap().scene
+}
+
+fn plan(scene: &Scene, max_depth: u32) -> Plan {
+    Plan::new(scene, &IntegratorSpec { max_depth: Some(max_depth), ..scene.integrator })
+}
+
+fn lines(items: &[Item]) -> String {
+    items.iter().map(|item| format!("{}: {}\n", item.part, item.reason)).collect()
+}
+
+const LASER: &str = r#"beam={"type": "laser", "power": 1, "radius": 0.01,
+    "to_world": [{"rotate": {"axis": [0, 1, 0], "angle": 90}}]}"#;
+
+#[test]
+fn switches_and_reasons_agree_at_every_depth() {
+    for name in ["cornell-blocks", "infinite-point", "mirror-caustic", "mirror-caustic-point"] {
+        let scene = shipped(name);
+        for depth in 1..5 {
+            let plan = plan(&scene, depth);
+            let needed = |part: &str| plan.needs.iter().any(|item| item.part == part);
+            let left_out = |part: &str| plan.left_out.iter().any(|item| item.part == part);
+            for (part, on) in [
+                ("photon beams", plan.beams),
+                ("surface photons", plan.surface_photons),
+                ("next-event estimation", plan.next_event_estimation),
+            ] {
+                assert_eq!(needed(part), on, "{name} to depth {depth}: {part}\n{plan}");
+                assert!(on || left_out(part), "{name} to depth {depth}: {part}\n{plan}");
+            }
+        }
+    }
+}
+
+#[test]
+fn beams_connect_at_surfaces_only() {
+    let plan = plan(&shipped("infinite-point"), 10);
+    assert!(plan.diffuse.is_empty() && plan.next_event_estimation);
+    let (path, beams) =
+        (plan.clone().of_method(MethodName::Path), plan.of_method(MethodName::Beams));
+    assert!(lines(&path.needs).contains("next-event"), "{path}");
+    assert!(!lines(&path.left_out).contains("next-event"), "{path}");
+    assert!(!lines(&beams.needs).contains("next-event"), "{beams}");
+    assert!(lines(&beams.left_out).contains("next-event"), "{beams}");
+}
+
+#[test]
+fn light_that_a_method_loses_is_marked() {
+    let lost = |scene: &Scene, depth, method| {
+        let left_out = plan(scene, depth).of_method(method).left_out;
+        let lost = left_out.into_iter().filter(|item| item.loses_light);
+        lost.map(|item| format!("{}: {}", item.part, item.reason)).collect::<Vec<_>>()
+    };
+    let (path, beams) = (MethodName::Path, MethodName::Beams);
+    let (caustic, laser) = (shipped("mirror-caustic-point"), cornell(&[LASER]));
+    for (scene, depth, word) in [(&caustic, 3, "caustics"), (&laser, 2, "connect to: beam")] {
+        let [line] = &lost(scene, depth, path)[..] else { panic!("{word}") };
+        assert!(line.contains(word), "{line}");
+        assert!(lost(scene, depth - 1, path).is_empty(), "not reached: {word}");
+        assert!(lost(scene, depth, beams).is_empty(), "{word}");
+    }
+    assert!(lost(&shipped("mirror-caustic"), 9, path).is_empty(), "the lamp has an area");
+    assert!(lost(&cornell(&[]), 9, path).is_empty());
+}
+
+#[test]
+fn the_reason_of_the_kernel_is_true_for_a_laser() {
+    let reason = |scene: &Scene| lines(&plan(scene, 9).needs);
+    assert!(reason(&cornell(&[])).contains("1D kernel: spread directions"));
+    let laser = reason(&cornell(&[LASER]));
+    assert!(laser.contains("1D kernel: no temporal blur; sound unless"), "{laser}");
+}
+
+#[test]
+fn light_that_may_never_end_is_found() {
+    let endless = |changes: &[&str]| plan(&cornell(changes), 9).endless;
+    assert!(endless(&[]).is_empty() && endless(&["fog.albedo=0.999999"]).is_empty());
+    let [fog] = &endless(&["fog.albedo=1"])[..] else { panic!("fog") };
+    assert!(fog.contains("medium 'fog'"), "{fog}");
+    let red = r#"white.reflectance={"type": "rgb", "value": [1, 0.5, 0]}"#;
+    let walls = endless(&[red]);
+    assert!(walls.len() > 1 && walls[0].contains("shape 'back'"), "{walls:?}");
+    assert!(endless(&["fog.albedo=1", "fog.sigma_t=0"]).is_empty(), "vacuum");
+    let [mirror] = &plan(&shipped("mirror-caustic"), 9).endless[..] else { panic!("no glass") };
+    assert!(mirror.contains("shape 'mirror_shape'"), "{mirror}");
+}
