@@ -29,12 +29,10 @@ use crate::Settings;
 use crate::beam::{Beam, CameraRay};
 use crate::beam_map::{BeamMap, Pairs};
 use crate::kernel::RayBeamKernel;
+use crate::photon::LARGEST_SURVIVAL;
 use crate::specular::Crossing;
 use crate::surface_map::SurfaceMap;
 use crate::tiles::Tiles;
-
-/// Largest probability to survive roulette, so that light that loses nothing ends too.
-const LARGEST_SURVIVAL: f64 = 0.95;
 
 /// Steps of the additive recurrence that spreads a pixel's paths evenly over it, from a random
 /// start (Roberts 2018, the R2 sequence: 1/φ and 1/φ² of the plastic number φ).
@@ -134,12 +132,7 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             Bsdf::Null => unreachable!("flights cross null boundaries"),
             Bsdf::Dielectric(glass) => {
                 let crossing = Crossing::choose(&glass, path.direction, hit.normal, rng);
-                if crossing.transmitted {
-                    let to_front = crossing.direction.dot(hit.normal) > 0.0;
-                    let shape = self.scene.shape(hit.primitive);
-                    path.vertex.region =
-                        self.scene.region_beyond(shape, to_front, path.vertex.region);
-                }
+                path.vertex.region = crossing.region(self.scene, &hit, path.vertex.region);
                 let radiance = crossing.eta_ratio * crossing.eta_ratio;
                 path.throughput *= crossing.factor.channels() * radiance;
                 path.direction = crossing.direction;

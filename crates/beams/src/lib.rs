@@ -11,15 +11,20 @@
 //!    surfaces by a disc. Emission seen and direct light on surfaces are computed without blur.
 //!
 //! **What is biased by what.** Light last scattered in a medium is blurred by the beams' radius;
-//! light last scattered on a diffuse surface, except straight from an emitter, by the disc's; both
-//! to second order in their radius away from borders. Everything else is unbiased. Each light path
+//! light last scattered on a diffuse surface, except straight from an emitter, by the disc's. Where
+//! light is smooth the bias is O(R²). Near borders it is O(R): within a radius of a medium's end,
+//! kernels reach out of it, and light blurred out is lost, not put back, so that media look darker
+//! along their borders and in all by O(R/chord); likewise discs on open meshes and along the feet
+//! of other objects ([`surface_map`]), and both at borders of shadows, where light is blurred but
+//! not lost. Everything else is unbiased. Each light path
 //! is counted once: by its last scattering event that is not specular it belongs to exactly one of
 //! emission, beams, direct light and surface photons.
 //!
 //! **Consistency.** Radii shrink with the pass ([`Settings::radii`]). Ray and beam meet with
-//! probability ∝ R and add ∝ 1/R, so that variance after n passes is ∝ 1/(nR) and bias² is ∝ R⁴:
-//! R ∝ i^(−1/5) makes the mean square error fall as n^(−4/5); for discs, ∝ 1/(nR²), it is
-//! R ∝ i^(−1/6) and n^(−2/3). A bin is no blur: it is what the sensor measures.
+//! probability ∝ R and add ∝ 1/R, so that variance after n passes is ∝ 1/(nR) and bias² is ∝ R⁴
+//! away from borders: R ∝ i^(−1/5) makes the mean square error there fall as n^(−4/5); for discs,
+//! ∝ 1/(nR²), it is R ∝ i^(−1/6) and n^(−2/3). Along borders, with bias² ∝ R², it falls as n^(−2/5)
+//! and n^(−1/3) at least: slower, but to 0. A bin is no blur: it is what the sensor measures.
 //!
 //! **Time** is optical path length from the emitter to the eye: τ_b + τ_r + η (s_b + s_r), the
 //! source's equation 5 with the camera's leg.
@@ -31,6 +36,7 @@ pub mod beam;
 pub mod beam_map;
 mod camera;
 pub mod contribution;
+mod defaults;
 pub mod kernel;
 pub mod kernel1d;
 pub mod kernel2d;

@@ -89,14 +89,10 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
         let Self { scene, plan, integrator, settings } = self;
         let (radius, surface_radius) = settings.radii(id.index);
         let Settings { photons_per_pass, beam_photons, .. } = *settings;
-        let count = match (plan.beams, plan.surface_photons) {
-            (_, true) => photons_per_pass,
-            (true, false) => beam_photons,
-            (false, false) => 0,
-        };
         let tracer = PhotonTracer { scene, plan, integrator: *integrator, length: settings.length };
-        let traced = tracer.trace::<C>(id, count, beam_photons);
-        let photons = SurfaceMap::new(&traced.surface, surface_radius);
+        let traced = tracer.trace::<C>(id, photons_per_pass, beam_photons);
+        let surface_photons = traced.surface.len() as u64;
+        let photons = SurfaceMap::new(traced.surface, surface_radius);
         let beams = &traced.beams;
         let pairs = match settings.kernel {
             KernelChoice::OneD => {
@@ -109,9 +105,9 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
         let samples = settings.gather_samples.max(settings.surface_samples);
         let counts = Counts {
             camera_paths: film.layout().pixels() as u64 * u64::from(samples),
-            photon_paths: count,
+            photon_paths: photons_per_pass,
             beams: beams.len() as u64,
-            surface_photons: traced.surface.len() as u64,
+            surface_photons,
             pairs_tested: pairs.tested,
             pairs_accepted: pairs.accepted,
         };

@@ -1,8 +1,9 @@
 //! What a user may choose, and what is chosen otherwise.
 
-use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use tpb_scene::{EmitterKind, Kernel, Media, Plan, Scene};
+use tpb_scene::{Kernel, Plan, Scene};
+
+use crate::defaults;
 
 /// Where a beam ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -58,7 +59,8 @@ pub struct BeamOptions {
     pub surface_radius_exponent: Option<f64>,
     /// Photons emitted in a pass.
     pub photons_per_pass: Option<u64>,
-    /// How many of them leave beams; all leave surface photons.
+    /// How many of them leave beams; all leave surface photons. By default all in scenes that keep
+    /// none on surfaces.
     pub beam_photons: Option<u64>,
     /// Camera paths per pixel and pass that gather beams.
     pub gather_samples: Option<u32>,
@@ -68,6 +70,25 @@ pub struct BeamOptions {
     pub light_samples: Option<u32>,
     /// Length of the pieces that beams are stored in, in radii.
     pub piece_radii: Option<f64>,
+}
+
+impl BeamOptions {
+    /// Numbers of photons as given, whether the scene needs them or not.
+    fn check_counts(&self) -> Result<(), OptionError> {
+        let (photons, beams) = (self.photons_per_pass, self.beam_photons);
+        for (option, count) in [("photons_per_pass", photons), ("beam_photons", beams)] {
+            if count == Some(0) {
+                return Err(OptionError { option, expected: "at least 1", found: 0.0 });
+            }
+        }
+        if let (Some(photons), Some(beams)) = (photons, beams)
+            && beams > photons
+        {
+            let (option, found) = ("beam_photons", beams as f64);
+            return Err(OptionError { option, expected: "at most photons_per_pass", found });
+        }
+        Ok(())
+    }
 }
 
 /// An option that makes no sense.
@@ -99,7 +120,7 @@ pub struct Settings {
     pub radius_exponent: f64,
     /// Likewise the disc's.
     pub surface_radius_exponent: f64,
-    /// Photons emitted in a pass.
+    /// Photons emitted in a pass; 0 in scenes that keep none.
     pub photons_per_pass: u64,
     /// How many of them leave beams; all leave surface photons.
     pub beam_photons: u64,
@@ -122,25 +143,40 @@ const BEAM_PHOTONS_PER_PIXEL_EDGE: f64 = 128.0;
 const PHOTONS_PER_PIXEL: u64 = 16;
 /// Passes below this cost more in overhead than in light.
 const FEWEST_PHOTONS: u64 = 4096;
-/// Memory: about 300 bytes per photon on surfaces, 600 in media.
+/// A pass takes 1.2 GB at most by default; see [`SURFACE_BYTES`] and [`BEAM_BYTES`].
 const MOST_PHOTONS: u64 = 1 << 18;
+/// Peak memory of a photon's traces on surfaces. Measured on cornell-blocks, 2.3 traces each: 340.
+const SURFACE_BYTES: u64 = 400;
+/// Likewise of its beams with their places in the tiles' lists, 5.3 beams each: 3440.
+const BEAM_BYTES: u64 = 4000;
+/// Memory beyond which a pass is refused.
+const MOST_BYTES: u64 = 16 << 30;
 
 impl Settings {
     /// Fills in the defaults.
     ///
     /// # Errors
-    /// [`OptionError`] for radii, exponents and counts out of their range.
+    /// [`OptionError`] for radii, exponents and counts out of their range, and for more photons than
+    /// fit into 16 GiB.
     pub fn new(scene: &Scene, plan: &Plan, options: &BeamOptions) -> Result<Self, OptionError> {
-        let footprint = footprint(scene, plan);
+        options.check_counts()?;
+        let (radius, surface_radius) = defaults::radii(scene);
         let pixels = scene.film.width * scene.film.height;
         let few = (BEAM_PHOTONS_PER_PIXEL_EDGE * (pixels as f64).sqrt()) as u64;
         let many = (PHOTONS_PER_PIXEL * pixels as u64).clamp(FEWEST_PHOTONS, MOST_PHOTONS);
         let few = few.clamp(FEWEST_PHOTONS, MOST_PHOTONS);
-        let photons_per_pass = options
-            .photons_per_pass
-            .or(options.beam_photons)
-            .unwrap_or(if plan.surface_photons { many.max(few) } else { few });
-        let beam_photons = options.beam_photons.unwrap_or(few.min(photons_per_pass));
+        let (given, given_beams) = (options.photons_per_pass, options.beam_photons);
+        let (photons_per_pass, beam_photons) = match (plan.surface_photons, plan.beams) {
+            (true, beams) => {
+                let photons = given.or(given_beams).unwrap_or(many.max(few));
+                (photons, if beams { given_beams.unwrap_or(few.min(photons)) } else { 0 })
+            }
+            (false, true) => {
+                let photons = given_beams.or(given).unwrap_or(few);
+                (photons, photons)
+            }
+            (false, false) => (0, 0),
+        };
         let kernel = options.kernel.unwrap_or(match plan.kernel {
             Kernel::OneD => KernelChoice::OneD,
             Kernel::TwoD => KernelChoice::TwoD,
@@ -149,8 +185,8 @@ impl Settings {
             kernel,
             length: options.length.unwrap_or_default(),
             temporal: options.temporal.unwrap_or_default(),
-            radius: options.radius.unwrap_or(footprint),
-            surface_radius: options.surface_radius.unwrap_or(2.0 * footprint),
+            radius: options.radius.unwrap_or(radius),
+            surface_radius: options.surface_radius.unwrap_or(surface_radius),
             radius_exponent: options.radius_exponent.unwrap_or(0.2),
             surface_radius_exponent: options.surface_radius_exponent.unwrap_or(1.0 / 6.0),
             photons_per_pass,
@@ -167,8 +203,9 @@ impl Settings {
     /// Radii of beams and discs in pass `index` \[m\].
     ///
     /// With variance ∝ 1/R for beams and 1/R² for discs, and bias ∝ R², the mean square error falls
-    /// fastest with exponents 1/5 and 1/6. The first passes keep the radius nearly: it is a pixel's
-    /// or two already, and shrinking from the very first pass would buy bias that noise hides.
+    /// fastest with exponents 1/5 and 1/6. (Near borders bias is ∝ R; see the crate's page.) The
+    /// first passes keep the radius nearly: it is a pixel's or two already, and shrinking from the
+    /// very first pass would buy bias that noise hides.
     pub fn radii(&self, index: u64) -> (f64, f64) {
         let age = 1.0 + index as f64 / PASSES_BEFORE_SHRINKING;
         let beams = self.radius * age.powf(-self.radius_exponent);
@@ -187,8 +224,6 @@ impl Settings {
             }
         }
         let counts = [
-            ("photons_per_pass", self.photons_per_pass),
-            ("beam_photons", self.beam_photons),
             ("gather_samples", u64::from(self.gather_samples)),
             ("surface_samples", u64::from(self.surface_samples)),
             ("light_samples", u64::from(self.light_samples)),
@@ -198,9 +233,13 @@ impl Settings {
                 return Err(OptionError { option, expected: "at least 1", found: 0.0 });
             }
         }
-        if self.beam_photons > self.photons_per_pass {
-            let (option, found) = ("beam_photons", self.beam_photons as f64);
-            return Err(OptionError { option, expected: "at most photons_per_pass", found });
+        let bytes = u128::from(self.photons_per_pass) * u128::from(SURFACE_BYTES)
+            + u128::from(self.beam_photons) * u128::from(BEAM_BYTES);
+        if bytes > u128::from(MOST_BYTES) {
+            let (option, found) = ("photons_per_pass", self.photons_per_pass as f64);
+            let expected =
+                "few enough for 16 GiB (about 400 bytes each, and 4000 each that leaves beams)";
+            return Err(OptionError { option, expected, found });
         }
         let exponents = [
             ("radius_exponent", self.radius_exponent),
@@ -212,32 +251,5 @@ impl Settings {
             }
         }
         Ok(())
-    }
-}
-
-/// Width of a pixel at the distance of what is looked at \[m\]: the middle of the scene, or, in
-/// fog without walls, a mean free path away.
-fn footprint(scene: &Scene, plan: &Plan) -> f64 {
-    let eye = scene.sensor.position;
-    let bounds = scene.bounds();
-    let distance = if scene.primitives.is_empty() {
-        let free_paths = scene.media.iter().map(|m| 1.0 / m.coefficients.sigma_t.mean());
-        let nearest_light = scene.emitters.iter().filter_map(|e| position(&e.kind));
-        let to_light = nearest_light.map(|p| (p - eye).length()).fold(f64::INFINITY, f64::min);
-        let free_path = free_paths.fold(f64::INFINITY, f64::min);
-        if plan.media == Media::None { to_light } else { free_path.min(to_light) }
-    } else {
-        (bounds.centre() - eye).length().max(0.5 * bounds.radius())
-    };
-    let distance = if distance > 0.0 && distance.is_finite() { distance } else { 1.0 };
-    distance * scene.sensor.pixel_width()
-}
-
-fn position(emitter: &EmitterKind) -> Option<DVec3> {
-    match *emitter {
-        EmitterKind::Point { position, .. }
-        | EmitterKind::Spot { position, .. }
-        | EmitterKind::Laser { position, .. } => Some(position),
-        EmitterKind::Area { .. } => None,
     }
 }

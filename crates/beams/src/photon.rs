@@ -6,7 +6,7 @@ use tpb_optics::{Spectrum, Stream};
 use tpb_scene::{IntegratorSpec, Vertex};
 
 /// Largest probability to survive roulette, so that light that loses nothing ends too.
-const LARGEST_SURVIVAL: f64 = 0.95;
+pub(crate) const LARGEST_SURVIVAL: f64 = 0.95;
 
 /// A photon under way.
 pub(crate) struct Photon<const C: usize> {
@@ -60,7 +60,7 @@ impl<const C: usize> Photon<C> {
         rng: &mut Stream,
         ledger: &mut Ledger,
     ) -> bool {
-        if self.events + 1 < limits.rr_depth {
+        if self.events < limits.rr_depth {
             return true;
         }
         let survival = (self.power.max_channel() / self.emitted).min(LARGEST_SURVIVAL);
@@ -72,5 +72,35 @@ impl<const C: usize> Photon<C> {
         self.power = self.power / survival;
         ledger.roulette_gained += self.power.luminance() - before;
         true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use tpb_scene::Region;
+
+    use super::*;
+
+    /// As camera paths: from `rr_depth` events on.
+    #[test]
+    fn roulette_starts_after_rr_depth_events() {
+        let limits = IntegratorSpec { rr_depth: 3, ..Default::default() };
+        for events in 0..6 {
+            let vertex = Vertex { position: DVec3::ZERO, primitive: None, region: Region::VACUUM };
+            let mut photon = Photon {
+                vertex,
+                direction: DVec3::Z,
+                power: Spectrum([1e-300]),
+                opl: 0.0,
+                events,
+                emitted: 1.0,
+                connectable: true,
+                beam_scale: None,
+            };
+            let mut rng = Stream::new(1, 2, 3);
+            let survives = photon.survives(&limits, &mut rng, &mut Ledger::default());
+            assert_eq!(survives, events < limits.rr_depth, "{events}");
+        }
     }
 }

@@ -9,9 +9,9 @@
 //! reflectance. Fluxes do not scale with η² on refraction.
 //!
 //! **Depth.** After n scattering events (of any kind but null crossings) a beam or a surface photon
-//! adds paths of depth n + 2 (plus the camera's specular events). Roulette ends paths from
-//! `rr_depth` on: survival with probability min(0.95, power now/power emitted), the largest
-//! channels compared.
+//! adds paths of depth n + 2 (plus the camera's specular events). Roulette ends photons from
+//! `rr_depth` events on: survival with the probability power now/power emitted, the largest
+//! channels compared, but never quite 1.
 //!
 //! **Counted once.** Surface photons that came from the emitter through null boundaries only are
 //! not kept: next-event estimation at the camera's end owns direct light. It cannot connect to
@@ -28,12 +28,13 @@ use tpb_film::Ledger;
 use tpb_optics::{Frame, Rgb, Spectrum, Stream, fresnel, medium, warp};
 use tpb_render::PassId;
 use tpb_scene::{
-    Bsdf, Dielectric, Flight, Hit, IntegratorSpec, MediumId, Plan, Reflector, Scene, Vertex,
+    Bsdf, Dielectric, Flight, Hit, IntegratorSpec, MediumId, Plan, Reflector, Region, Scene, Vertex,
 };
 
 use crate::beam::{Attenuation, Beam, SurfacePhoton, visible_length};
 use crate::mixture::{relative_transmittance, weight};
 use crate::photon::Photon;
+use crate::specular::Crossing;
 use crate::{BeamLength, stream_item};
 
 /// Photons per parallel task; the division does not depend on threads.
@@ -63,10 +64,11 @@ pub struct PhotonTracer<'a> {
     pub length: BeamLength,
 }
 
-/// A free flight's end: where, and in which medium.
+/// A free flight's end: where, and in which medium and region.
 struct Collision {
     distance: f64,
     medium: MediumId,
+    region: Region,
 }
 
 impl PhotonTracer<'_> {
@@ -91,6 +93,7 @@ impl PhotonTracer<'_> {
         let mut all = Photons::default();
         all.beams.reserve_exact(chunks.iter().map(|c| c.beams.len()).sum());
         all.surface.reserve_exact(chunks.iter().map(|c| c.surface.len()).sum());
+        // Each chunk is freed as soon as it is merged.
         for chunk in chunks {
             all.beams.extend(chunk.beams);
             all.surface.extend(chunk.surface);
@@ -177,7 +180,7 @@ impl PhotonTracer<'_> {
             }
             let distance = span.start + depth / sigma_t;
             if distance < span.end {
-                return Some(Collision { distance, medium: id });
+                return Some(Collision { distance, medium: id, region: span.region });
             }
             depth -= sigma_t * (span.end - span.start);
         }
@@ -252,12 +255,11 @@ impl PhotonTracer<'_> {
         if !photon.goes_on(&self.integrator, ledger) {
             return false;
         }
-        let region = flight.spans.iter().find(|s| collision.distance < s.end);
         photon.opl += flight.opl(collision.distance);
         photon.vertex = Vertex {
             position: flight.at(collision.distance),
             primitive: None,
-            region: region.map_or(flight.last_region(), |s| s.region),
+            region: collision.region,
         };
         photon.direction = medium.phase.sample(photon.direction, rng);
         true
@@ -317,12 +319,8 @@ impl PhotonTracer<'_> {
         glass: &Dielectric,
         rng: &mut Stream,
     ) -> (Rgb, DVec3) {
-        let crossing = crate::specular::Crossing::choose(glass, photon.direction, hit.normal, rng);
-        if crossing.transmitted {
-            let to_front = crossing.direction.dot(hit.normal) > 0.0;
-            let shape = self.scene.shape(hit.primitive);
-            photon.vertex.region = self.scene.region_beyond(shape, to_front, photon.vertex.region);
-        }
+        let crossing = Crossing::choose(glass, photon.direction, hit.normal, rng);
+        photon.vertex.region = crossing.region(self.scene, hit, photon.vertex.region);
         (crossing.factor, crossing.direction)
     }
 

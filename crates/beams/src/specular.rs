@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use tpb_optics::{Rgb, Stream, fresnel};
-use tpb_scene::Dielectric;
+use tpb_scene::{Dielectric, Hit, Region, Scene};
 
 /// The way taken at a boundary.
 #[derive(Clone, Copy, Debug)]
@@ -11,7 +11,7 @@ pub(crate) struct Crossing {
     /// New propagation direction.
     pub(crate) direction: DVec3,
     /// Whether the boundary was crossed.
-    pub(crate) transmitted: bool,
+    transmitted: bool,
     /// The material's own factor (1 for real glass); the Fresnel factor is the probability.
     pub(crate) factor: Rgb,
     /// Refractive index before the boundary over that behind it; 1 after a reflection.
@@ -45,5 +45,14 @@ impl Crossing {
         let ratio = from / to;
         let direction = fresnel::refract(direction, facing, ratio, f.cos_transmitted);
         Self { direction, transmitted: true, factor: glass.transmittance, eta_ratio: ratio }
+    }
+
+    /// The region that the way leads into, from `before` at `hit`.
+    pub(crate) fn region(&self, scene: &Scene, hit: &Hit, before: Region) -> Region {
+        if !self.transmitted {
+            return before;
+        }
+        let to_front = self.direction.dot(hit.normal) > 0.0;
+        scene.region_beyond(scene.shape(hit.primitive), to_front, before)
     }
 }

@@ -40,11 +40,11 @@ pub struct SurfaceMap<const C: usize> {
 
 impl<const C: usize> SurfaceMap<C> {
     /// For density estimates within `radius`.
-    pub fn new(photons: &[SurfacePhoton<C>], radius: f64) -> Self {
-        let buckets = photons.len().next_power_of_two().max(1);
+    pub fn new(unsorted: Vec<SurfacePhoton<C>>, radius: f64) -> Self {
+        let buckets = unsorted.len().next_power_of_two().max(1);
         let bucket = |p: &SurfacePhoton<C>| bucket_of(cell_of(p.position, radius), buckets);
         let mut starts = vec![0_u32; buckets + 1];
-        for photon in photons {
+        for photon in &unsorted {
             starts[bucket(photon) + 1] += 1;
         }
         for b in 0..buckets {
@@ -52,13 +52,14 @@ impl<const C: usize> SurfaceMap<C> {
         }
         // A stable counting sort.
         let mut next = starts.clone();
-        let mut order = vec![0_u32; photons.len()];
-        for (index, photon) in photons.iter().enumerate() {
+        let mut order = vec![0_u32; unsorted.len()];
+        for (index, photon) in unsorted.iter().enumerate() {
             let slot = &mut next[bucket(photon)];
             order[*slot as usize] = index as u32;
             *slot += 1;
         }
-        let photons: Vec<_> = order.iter().map(|&index| photons[index as usize]).collect();
+        let photons: Vec<_> = order.iter().map(|&index| unsorted[index as usize]).collect();
+        drop(unsorted);
         let positions = photons.iter().map(|photon| photon.position).collect();
         Self { photons, positions, starts, radius }
     }

@@ -1,5 +1,6 @@
 //! Tests of the method against quadrature, brute force and known scenes; all seeds are fixed.
 
+mod defaults;
 mod fog;
 mod gather;
 mod kernels;
