@@ -247,7 +247,7 @@ impl Plan {
         let seen = !self.diffuse.is_empty() || self.media == Media::Scattering;
         if seen && integrator.reaches(2) && !self.unconnectable.is_empty() {
             let names = self.unconnectable.join(", ");
-            self.lose("light of lasers", format!("no path can connect to: {names}"));
+            self.lose("light of lasers", &format!("no path can connect to: {names}"));
         }
         let points = emitters(scene, |kind| {
             matches!(kind, EmitterKind::Point { .. } | EmitterKind::Spot { .. })
@@ -256,7 +256,7 @@ impl Plan {
         if seen && integrator.reaches(3) && specular && !points.is_empty() {
             let names = points.join(", ");
             let reason = format!("no path can hit a point by a mirror or through glass: {names}");
-            self.lose("caustics of points and spots", reason);
+            self.lose("caustics of points and spots", &reason);
         }
     }
 
@@ -276,15 +276,15 @@ impl Plan {
         let (Ok(reason) | Err(reason)) = decision;
         let item = Item { part: part.to_owned(), reason, loses_light: false, only };
         if needed {
-            self.needs.push(item)
+            self.needs.push(item);
         } else {
-            self.left_out.push(item)
+            self.left_out.push(item);
         }
         needed
     }
 
     /// Light that the path tracer leaves out and photon beams render.
-    fn lose(&mut self, part: &str, reason: String) {
+    fn lose(&mut self, part: &str, reason: &str) {
         let reason = format!("{reason}; photon beams render it");
         let only = Some(MethodName::Path);
         self.left_out.push(Item { part: part.to_owned(), reason, loses_light: true, only });

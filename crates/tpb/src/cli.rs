@@ -45,19 +45,22 @@ pub(crate) struct RenderArgs {
     pub(crate) job: JobArgs,
 
     /// Wall time to render for, preparation included: 500ms, 20s, 3m, 1h [default: 10s]
-    #[arg(long, value_name = "TIME", value_parser = values::duration, conflicts_with = "passes")]
+    #[arg(
+        long, value_name = "TIME", value_parser = values::duration, conflicts_with = "passes",
+        allow_hyphen_values = true
+    )]
     pub(crate) time: Option<Duration>,
 
     /// Number of passes to render instead; the arrays are then reproducible to the bit
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) passes: Option<NonZeroU64>,
 
     /// Seed of all random numbers
-    #[arg(long, value_name = "S", default_value_t = 0)]
+    #[arg(long, value_name = "S", default_value_t = 0, allow_negative_numbers = true)]
     pub(crate) seed: u64,
 
     /// Threads to use; results do not depend on it [default: all of the machine's]
-    #[arg(long, value_name = "N", value_parser = values::threads)]
+    #[arg(long, value_name = "N", value_parser = values::threads, allow_negative_numbers = true)]
     pub(crate) threads: Option<NonZeroUsize>,
 
     /// Result folder; replaces an earlier result, nothing else [default: SCENE-METHOD]
@@ -74,7 +77,10 @@ pub(crate) struct RenderArgs {
 
     /// Pulse of the emitters: delta, gaussian:30ps (full width at half maximum), box:50ps
     /// (duration), or continuous (switched on at time 0)
-    #[arg(long, value_name = "PULSE", default_value = "delta", value_parser = values::pulse)]
+    #[arg(
+        long, value_name = "PULSE", default_value = "delta", value_parser = values::pulse,
+        allow_hyphen_values = true
+    )]
     pub(crate) pulse: Pulse,
 
     /// Write arrays and report only
@@ -125,11 +131,11 @@ pub(crate) struct JobArgs {
     pub(crate) max_depth: Option<values::MaxDepth>,
 
     /// Shallowest paths counted [default: the scene's]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) min_depth: Option<NonZeroU32>,
 
     /// Depth from which Russian roulette may end a path [default: the scene's]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) rr_depth: Option<NonZeroU32>,
 }
 
@@ -160,39 +166,47 @@ pub(crate) struct BeamArgs {
     pub(crate) temporal: Option<TemporalArg>,
 
     /// Radius of the kernel in the first pass, in metres
-    #[arg(long, value_name = "R")]
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
     pub(crate) radius: Option<f64>,
 
     /// Radius of the surface photons' disc in the first pass, in metres
-    #[arg(long, value_name = "R")]
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
     pub(crate) surface_radius: Option<f64>,
 
     /// How fast the kernel shrinks over the passes, from 0 (not at all) to below 0.5
-    #[arg(long, value_name = "E")]
+    #[arg(long, value_name = "E", allow_hyphen_values = true)]
     pub(crate) radius_exponent: Option<f64>,
 
     /// Likewise the surface photons' disc
-    #[arg(long, value_name = "E")]
+    #[arg(long, value_name = "E", allow_hyphen_values = true)]
     pub(crate) surface_radius_exponent: Option<f64>,
 
     /// Photons emitted in a pass
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    #[arg(
+        long, value_name = "N",
+        value_parser = clap::value_parser!(u64).range(1..=1_000_000_000),
+        allow_negative_numbers = true
+    )]
     pub(crate) photons: Option<u64>,
 
     /// How many of them leave beams; all leave surface photons
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    #[arg(
+        long, value_name = "N",
+        value_parser = clap::value_parser!(u64).range(1..=1_000_000_000),
+        allow_negative_numbers = true
+    )]
     pub(crate) beam_photons: Option<u64>,
 
     /// Camera rays per pixel and pass that gather beams
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) gather_samples: Option<u32>,
 
     /// Camera rays per pixel and pass that end on a surface
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) surface_samples: Option<u32>,
 
     /// Connections to light sources per camera ray
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) light_samples: Option<u32>,
 }
 
@@ -201,7 +215,7 @@ pub(crate) struct BeamArgs {
 #[command(next_help_heading = "Options of path (chosen from the film unless given)")]
 pub(crate) struct PathArgs {
     /// Camera paths per pixel and pass
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) samples_per_pass: Option<NonZeroU32>,
 }
 

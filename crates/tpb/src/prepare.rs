@@ -49,6 +49,13 @@ impl Job {
         }
         let method = MethodSpec::new(args.method, own, &integrator)?;
         let plan = Plan::new(&loaded.scene, &integrator).of_method(method.method());
+        if integrator.max_depth.is_none() && !plan.endless.is_empty() {
+            let reasons = plan.endless.join("; ");
+            return Err(Failure::with_help(
+                format!("light may never end, and the depth of paths is unlimited: {reasons}"),
+                "limit it with --max-depth N; the energy cut is then in the ledger of the report",
+            ));
+        }
         Ok(Self { loaded, integrator, plan, method })
     }
 

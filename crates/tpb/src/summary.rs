@@ -40,10 +40,10 @@ pub(crate) fn of_report(lines: &mut Lines, report: &Report) {
     lines.add("time", &time(run));
     lines.add("rate", &rates(report));
     let error = match run.relative_error {
-        Some(error) => format!("{:.3} %, median of the lit pixels' steady values", 100.0 * error),
+        Some(error) => format!("{:.3} % (median relative error of a pixel)", 100.0 * error),
         None => "unknown: it needs two passes and some light".to_owned(),
     };
-    lines.add("relative error", &error);
+    lines.add("error", &error);
     if let Some(closure) = report.ledger_closure {
         let carrier = &run.ledger.carrier;
         lines.add("ledger", &format!("of {carrier} closes to {:.1e}", closure.abs()));

@@ -69,7 +69,7 @@ impl Control for Watch {
             Budget::Time(time) => milliseconds(elapsed.min(time)),
         });
         let error = relative_error
-            .map_or_else(String::new, |e| format!(", median error of a pixel {:.3} %", 100.0 * e));
+            .map_or_else(String::new, |e| format!(", error {:.3} % (median of pixels)", 100.0 * e));
         let left = HumanDuration(remaining);
         let plural = if passes == 1 { "" } else { "es" };
         self.bar.set_message(format!("{passes} pass{plural}{error}, {left:#} left"));

@@ -17,7 +17,9 @@ fn plan(scene: &Scene, max_depth: u32) -> Plan {
 }
 
 fn lines(items: &[Item]) -> String {
-    items.iter().map(|item| format!("{}: {}\n", item.part, item.reason)).collect()
+    let lines: Vec<_> =
+        items.iter().map(|item| format!("{}: {}", item.part, item.reason)).collect();
+    lines.join("\n")
 }
 
 const LASER: &str = r#"beam={"type": "laser", "power": 1, "radius": 0.01,

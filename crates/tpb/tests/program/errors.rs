@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::{FEW, assert_refused, render, scene, tpb};
+use crate::{FEW, assert_done, assert_refused, render, scene, tpb};
 
 #[test]
 fn a_bad_scene_shows_the_place() {
@@ -32,15 +32,20 @@ fn a_misspelt_override_gets_the_nearest_name() {
     assert_refused(&set("sensor.film.widht=8"), &["widht", "`width`"]);
     assert_refused(&set("sensr.film.width=8"), &["sensr", "sensor"]);
     assert_refused(&set("width"), &["="]);
+    assert_refused(&set("fog.sigma_t=1e999"), &["out of range", "--set"]);
     assert_refused(&set("sensor.film.width=0"), &["--set sensor.film.width=0"]);
 }
 
 #[test]
 fn impossible_options_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let cases: [(&[&str], &[&str]); 13] = [
+    let cases: [(&[&str], &[&str]); 20] = [
         (&["--time", "20"], &["unit"]),
         (&["--time=-1s"], &["positive"]),
+        (&["--time", "-1s"], &["positive"]),
+        (&["--passes", "-1"], &["invalid value '-1'"]),
+        (&["--threads", "-1"], &["from 1"]),
+        (&["--pulse", "-1"], &["gaussian:TIME"]),
         (&["--time", "1s", "--passes", "3"], &["cannot be used with"]),
         (&["--passes", "0"], &["--passes"]),
         (&["--threads", "0"], &["from 1"]),
@@ -51,6 +56,15 @@ fn impossible_options_are_refused() {
         (&["--method", "path", "--radius", "0.1"], &["options of beams"]),
         (&["--method", "beams", "--samples-per-pass", "3"], &["options of path"]),
         (&["--method", "beams", "--radius", "0"], &["radius"]),
+        (&["--method", "beams", "--radius", "-1"], &["'radius' of the beams must be"]),
+        (
+            &["--method", "beams", "--surface-radius", "-1e-3"],
+            &["'surface_radius' of the beams must be"],
+        ),
+        (
+            &["--method", "beams", "--radius-exponent", "-0.1"],
+            &["'radius_exponent' of the beams must be"],
+        ),
         (&["--method", "beams", "--photons", "0"], &["--photons"]),
     ];
     for (options, parts) in cases {
@@ -76,4 +90,24 @@ fn what_does_not_fit_is_refused_before_it_is_tried() {
             assert_refused(&output, &[]);
         }
     }
+}
+
+#[test]
+fn light_that_may_never_end_needs_a_limit_of_depth() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene("mirror-caustic");
+    let scene = scene.to_str().unwrap();
+    let all = ["--set", "fog.albedo=1", "--max-depth", "-1"];
+    for command in ["render", "plan"] {
+        for method in ["path", "beams"] {
+            let output =
+                tpb(folder.path(), [&[command, scene, "--method", method], &all[..]].concat());
+            let reasons = ["medium 'fog'", "shape 'mirror_shape'", "--max-depth N", "ledger"];
+            assert_refused(&output, &reasons);
+        }
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "no result folder");
+    let mirror = "mirror.specular_reflectance=0.9";
+    assert_done(&tpb(folder.path(), ["plan", scene, "--max-depth", "-1", "--set", mirror]));
+    assert_done(&tpb(folder.path(), ["plan", scene, "--max-depth", "50"]));
 }

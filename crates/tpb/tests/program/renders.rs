@@ -4,7 +4,7 @@ use std::fs;
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::{FEW, assert_done, render, scene, stdout, tpb};
+use crate::{FEW, SMALL, assert_done, render, scene, stdout, tpb};
 
 const PATH: [&str; 2] = ["--method", "path"];
 
@@ -82,4 +82,24 @@ fn the_folder_is_named_after_scene_and_method() {
     assert_done(&output);
     assert!(stdout(&output).contains("passes           1, seed 0"), "{}", stdout(&output));
     assert!(folder.path().join("infinite-point-path/report.json").exists());
+}
+
+#[test]
+fn light_that_a_method_leaves_out_is_a_warning_and_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene("mirror-caustic-point");
+    let start = ["render", scene.to_str().unwrap(), "--passes", "1", "-o", "r", "--method"];
+    for (method, expected) in [(&PATH[1..], 1), (&FEW[1..], 0)] {
+        let output = tpb(folder.path(), [&start[..], method, &SMALL].concat());
+        assert_done(&output);
+        let said = stdout(&output).contains("WARNING          the image lacks caustics");
+        assert_eq!(said, expected == 1, "{}", stdout(&output));
+        let report = fs::read_to_string(folder.path().join("r/report.json")).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let warnings = report["warnings"].as_array().unwrap();
+        assert_eq!(warnings.len(), expected, "{warnings:?}");
+        let left_out = report["plan"]["left_out"].as_array().unwrap();
+        let lost = left_out.iter().filter(|item| item["loses_light"] == true);
+        assert_eq!(lost.count(), expected);
+    }
 }
