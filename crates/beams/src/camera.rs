@@ -23,7 +23,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use tpb_film::{Arrival, Strip};
 use tpb_optics::{Rgb, Spectrum, Stream, fresnel};
-use tpb_scene::{Bsdf, Flight, Hit, IntegratorSpec, Plan, Reflector, Scene, Vertex};
+use tpb_scene::{Bsdf, Dielectric, Flight, Hit, IntegratorSpec, Plan, Reflector, Scene, Vertex};
 
 use crate::Settings;
 use crate::beam::{Beam, CameraRay};
@@ -46,7 +46,7 @@ pub(crate) struct Camera<'a, const C: usize, K> {
     pub(crate) settings: &'a Settings,
     pub(crate) tiles: &'a Tiles<'a, C>,
     /// For rays that mirrors or glass have turned; `None` in scenes without.
-    pub(crate) beams: Option<&'a BeamMap<'a, C>>,
+    pub(crate) hierarchy: Option<&'a BeamMap<'a, C>>,
     pub(crate) photons: &'a SurfaceMap<C>,
     pub(crate) kernel: K,
 }
@@ -113,47 +113,56 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             self.gather(path, &flight, share, pairs);
         }
         let Some(hit) = flight.hit else { return false };
-        path.throughput *= flight.transmittance(self.scene, hit.distance);
+        path.arrive(self.scene, &flight, &hit);
         if path.throughput.is_zero() {
             return false;
         }
-        path.opl += flight.opl(hit.distance);
-        path.vertex = Vertex {
-            position: hit.position,
-            primitive: Some(hit.primitive),
-            region: flight.last_region(),
-        };
         if let Some(share) = surface {
             self.emission(path, &hit, share);
         }
-        let front = path.direction.dot(hit.normal) < 0.0;
-        let normal = if front { hit.normal } else { -hit.normal };
-        match self.scene.shape(hit.primitive).bsdf {
+        let goes_on = match self.scene.shape(hit.primitive).bsdf {
             Bsdf::Null => unreachable!("flights cross null boundaries"),
             Bsdf::Dielectric(glass) => {
-                let crossing = Crossing::choose(&glass, path.direction, hit.normal, rng);
-                path.vertex.region = crossing.region(self.scene, &hit, path.vertex.region);
-                let radiance = crossing.eta_ratio * crossing.eta_ratio;
-                path.throughput *= crossing.factor.channels() * radiance;
-                path.direction = crossing.direction;
+                path.cross(self.scene, &glass, &hit, rng);
+                true
             }
-            Bsdf::Opaque { front: on_front, back } => match if front { on_front } else { back } {
-                Reflector::Black => return false,
-                Reflector::Mirror(rho) => {
-                    path.throughput *= rho.channels();
-                    path.direction = fresnel::reflect(path.direction, normal);
-                }
-                Reflector::Diffuse(rho) => {
-                    if let (Some(share), false) = (surface, rho.is_zero()) {
-                        self.direct(path, normal, rho, share, rng);
-                        self.indirect(path, &hit, normal, rho, share);
-                    }
-                    return false;
-                }
-            },
-        }
+            Bsdf::Opaque { front, back } => {
+                let (reflector, normal) = if path.direction.dot(hit.normal) < 0.0 {
+                    (front, hit.normal)
+                } else {
+                    (back, -hit.normal)
+                };
+                self.reflect(path, reflector, (&hit, normal), surface, rng)
+            }
+        };
         path.events += 1;
-        self.integrator.reaches(path.events + 1) && !path.throughput.is_zero()
+        goes_on && self.integrator.reaches(path.events + 1) && !path.throughput.is_zero()
+    }
+
+    /// An opaque surface, seen from the side of `normal`: mirrors turn the path, others end it.
+    fn reflect(
+        &self,
+        path: &mut Path<'_, '_, C>,
+        reflector: Reflector,
+        (hit, normal): (&Hit, DVec3),
+        surface: Option<f64>,
+        rng: &mut Stream,
+    ) -> bool {
+        match reflector {
+            Reflector::Black => false,
+            Reflector::Mirror(rho) => {
+                path.throughput *= rho.channels();
+                path.direction = fresnel::reflect(path.direction, normal);
+                true
+            }
+            Reflector::Diffuse(rho) => {
+                if let (Some(share), false) = (surface, rho.is_zero()) {
+                    self.direct(path, normal, rho, share, rng);
+                    self.indirect(path, hit, normal, rho, share);
+                }
+                false
+            }
+        }
     }
 
     /// Beams seen along a flight.
@@ -186,8 +195,8 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             pairs.add(if events == 0 {
                 self.tiles.query(self.kernel, id, path.at, &ray, add)
             } else {
-                let beams = self.beams.expect("scenes with specular shapes have a hierarchy");
-                beams.query(self.kernel, id, &ray, add)
+                let map = self.hierarchy.expect("scenes with specular shapes have a hierarchy");
+                map.query(self.kernel, id, &ray, add)
             });
         }
     }
@@ -264,6 +273,26 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
 }
 
 impl<const C: usize> Path<'_, '_, C> {
+    /// Moves to the end of a flight.
+    fn arrive(&mut self, scene: &Scene, flight: &Flight, hit: &Hit) {
+        self.throughput *= flight.transmittance(scene, hit.distance);
+        self.opl += flight.opl(hit.distance);
+        self.vertex = Vertex {
+            position: hit.position,
+            primitive: Some(hit.primitive),
+            region: flight.last_region(),
+        };
+    }
+
+    /// Reflection or refraction.
+    fn cross(&mut self, scene: &Scene, glass: &Dielectric, hit: &Hit, rng: &mut Stream) {
+        let crossing = Crossing::choose(glass, self.direction, hit.normal, rng);
+        self.vertex.region = crossing.region(scene, hit, self.vertex.region);
+        let radiance = crossing.eta_ratio * crossing.eta_ratio;
+        self.throughput *= crossing.factor.channels() * radiance;
+        self.direction = crossing.direction;
+    }
+
     fn deposit(&mut self, opl: f64, energy: Spectrum<C>) {
         self.strip.deposit(self.pixel, self.unwarp_opl, &Arrival::Instant(opl), energy);
     }

@@ -57,9 +57,10 @@ impl<'a> PhotonBeams<'a> {
         let integrator = *integrator;
         let tiles = &Tiles::new(scene, beams, radius);
         let turned = !(plan.refracting.is_empty() && plan.mirrors.is_empty());
-        let map = turned.then(|| BeamMap::new(beams, radius, settings.piece_radii * radius));
-        let beams = map.as_ref();
-        let camera = Camera { scene, plan, integrator, settings, tiles, beams, photons, kernel };
+        let hierarchy = turned.then(|| BeamMap::new(beams, radius, settings.piece_radii * radius));
+        let hierarchy = hierarchy.as_ref();
+        let camera =
+            Camera { scene, plan, integrator, settings, tiles, hierarchy, photons, kernel };
         let found = film.add_pass(|strip| {
             let mut pairs = Pairs::default();
             for pixel in strip.pixels() {
@@ -106,7 +107,7 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
         let counts = Counts {
             camera_paths: film.layout().pixels() as u64 * u64::from(samples),
             photon_paths: photons_per_pass,
-            beams: beams.len() as u64,
+            beams: traced.beams.len() as u64,
             surface_photons,
             pairs_tested: pairs.tested,
             pairs_accepted: pairs.accepted,
