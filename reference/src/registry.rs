@@ -181,7 +181,7 @@ mod tests {
     fn inputs_of_another_solution_are_refused_by_name() {
         let Value::Object(inputs) = serde_json::json!({"energy": 1.0, "sigma_t": 1.0, "R": 2.0})
         else {
-            unreachable!()
+            panic!("an object was written")
         };
         let evaluate = find("ballistic_point_fluence").unwrap().quantities[0].evaluate;
         let Err(ReferenceError::Inputs(source)) = evaluate(&inputs) else { panic!("accepted") };
