@@ -24,10 +24,10 @@ impl Coefficients<3> {
 }
 
 impl<const C: usize> Coefficients<C> {
-    /// exp(−sigma_t·distance); 0 (not NaN) at infinite distance, 1 where sigma_t is 0.
+    /// Optical depth sigma_t·length; 0 (not NaN) where sigma_t is 0, at infinite length too.
     #[inline]
-    pub fn transmittance(&self, distance: f64) -> Spectrum<C> {
-        self.sigma_t.map(|sigma_t| if sigma_t == 0.0 { 1.0 } else { (-sigma_t * distance).exp() })
+    pub fn depth(&self, length: f64) -> Spectrum<C> {
+        self.sigma_t.map(|sigma_t| if sigma_t == 0.0 { 0.0 } else { sigma_t * length })
     }
 
     /// Whether light is scattered at all.
@@ -74,9 +74,9 @@ mod tests {
     #[test]
     fn nothing_is_left_at_infinity_and_vacuum_takes_nothing() {
         let fog = Coefficients { sigma_s: Spectrum([0.4]), sigma_t: Spectrum([0.5]) };
-        assert_eq!(fog.transmittance(f64::INFINITY), Spectrum([0.0]));
+        assert_eq!(transmittance(fog.depth(f64::INFINITY)), Spectrum([0.0]));
         let vacuum = Coefficients { sigma_s: Spectrum([0.0]), sigma_t: Spectrum([0.0]) };
-        assert_eq!(vacuum.transmittance(f64::INFINITY), Spectrum([1.0]));
+        assert_eq!(transmittance(vacuum.depth(f64::INFINITY)), Spectrum([1.0]));
     }
 
     #[test]

@@ -32,14 +32,6 @@ impl Phase {
         if g == 0.0 { Self::Isotropic } else { Self::HenyeyGreenstein { g } }
     }
 
-    /// Mean cosine of the scattering angle.
-    pub fn mean_cosine(self) -> f64 {
-        match self {
-            Self::Isotropic => 0.0,
-            Self::HenyeyGreenstein { g } => g,
-        }
-    }
-
     /// Value, and pdf of [`Phase::sample`], at the cosine of the scattering angle \[1/sr\].
     #[inline]
     pub fn value(self, cos_theta: f64) -> f64 {

@@ -143,9 +143,7 @@ impl<'a, const C: usize> FreeFlight<'a, C> {
     fn depths(&self, distance: f64) -> (Spectrum<C>, Spectrum<C>) {
         let (mut scattering, mut absorbing) = (Spectrum::ZERO, Spectrum::ZERO);
         for part in self.parts().take_while(|part| part.start < distance) {
-            let length = part.end.min(distance) - part.start;
-            // No 0·∞: a channel without extinction loses nothing at any length.
-            let depth = part.coefficients.sigma_t.map(|s| if s == 0.0 { 0.0 } else { s * length });
+            let depth = part.coefficients.depth(part.end.min(distance) - part.start);
             if part.coefficients.scatters() {
                 scattering += depth;
             } else {

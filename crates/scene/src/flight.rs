@@ -88,9 +88,7 @@ impl Flight {
         let mut depth = Spectrum::ZERO;
         for (span, length) in self.parts(distance) {
             if let Some(medium) = span.region.medium {
-                let sigma_t = scene.medium(medium).coefficients.channels::<C>().sigma_t;
-                // No 0·∞: a medium without extinction takes nothing at any length.
-                depth += sigma_t.map(|s| if s == 0.0 { 0.0 } else { s * length });
+                depth += scene.medium(medium).coefficients.channels::<C>().depth(length);
             }
         }
         depth
