@@ -4,7 +4,7 @@
 //! measure in configurations that have an exact solution, and it therefore shares no code with
 //! the renderers that it judges: no vector type, no phase function, no random number.
 //!
-//! One module holds one subject. Every solution is an ordinary function of one struct of named
+//! One module holds one subject; its `mod.rs` lists what there is. Every solution is an ordinary function of one struct of named
 //! inputs, `name(&Inputs) -> Result<f64, ReferenceError>`; the name and the fields are those of
 //! the table that the solution reproduces ([`tables`]).
 //!
@@ -26,18 +26,17 @@
 //! without a finite value, is an error and never a NaN.
 
 pub mod ballistic;
-pub mod beam_ray;
-mod bernstein;
+pub mod beams;
 pub mod diffuse_sphere;
+mod diffusion;
+mod dwell;
 pub mod error;
-pub mod expected_blur;
-pub mod expected_blur_disc;
-mod path_integral;
+mod infinite_medium;
+mod interfaces;
+pub mod numerics;
 pub mod phase;
-pub mod quadrature;
 pub mod registry;
 pub mod single_scattering;
 pub mod tables;
-mod vector;
 
 pub use error::ReferenceError;

@@ -57,7 +57,7 @@ pub fn check_mean_cosine(g: f64) -> Result<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quadrature::adaptive;
+    use crate::numerics::quadrature::adaptive;
 
     const MEAN_COSINES: [f64; 7] = [-0.99, -0.5, -1e-9, 0.0, 0.3, 0.9, 0.99];
 

@@ -1,41 +1,36 @@
-//! Which solution goes by which name: the one list that the tables are looked up in.
+//! Which solution goes by which name: what tables and programs look solutions up in.
 //!
-//! A solution is a function of one deserialisable struct. Its line in [`SOLUTIONS`] gives the
-//! name of its table, the class of its tolerance, and the function, or one function for each of
-//! the quantities that the table distinguishes.
+//! A solution is a function of one deserialisable struct. Each subject of this crate has a list of
+//! its own, `SOLUTIONS` in its `mod.rs`; a line gives the name of the table, the class of its
+//! tolerance, the function (or one for each of the quantities that the table distinguishes), what it
+//! is, and in which unit. A solution is exact unless it says otherwise ([`Solution::approximate`]).
 
-use crate::ballistic::ballistic_point_fluence;
-use crate::beam_ray::{beam_ray_1d, beam_ray_2d_bins};
-use crate::diffuse_sphere::{sphere_centre_radiance_bins, sphere_chords_cdf, sphere_chords_pdf};
 use crate::error::{ReferenceError, Result};
-use crate::expected_blur::{expected_blur_1d, expected_blur_1d_bins};
-use crate::expected_blur_disc::{expected_blur_2d, expected_blur_2d_bins};
-use crate::single_scattering::{
-    once_scattered_fluence, single_scatter_radiance, single_scatter_radiance_bins,
+use crate::{
+    ballistic, beams, diffuse_sphere, diffusion, dwell, infinite_medium, interfaces,
+    single_scattering,
 };
-use ToleranceClass::{ClosedForm, Quadrature};
 use serde::de::{DeserializeOwned, Deserializer, Visitor};
 use serde_json::{Map, Value};
 
-/// Every solution of this crate.
-pub static SOLUTIONS: &[Solution] = &[
-    solution!("ballistic_point_fluence", ClosedForm, ballistic_point_fluence),
-    solution!("single_scatter_radiance", ClosedForm, single_scatter_radiance),
-    solution!("single_scatter_radiance_bins", Quadrature, single_scatter_radiance_bins),
-    solution!("once_scattered_fluence", ClosedForm, once_scattered_fluence),
-    solution!("beam_ray_1d", ClosedForm, beam_ray_1d),
-    solution!("beam_ray_2d_bins", Quadrature, beam_ray_2d_bins),
-    solution!("expected_blur_1d", Quadrature, expected_blur_1d),
-    solution!("expected_blur_1d_bins", Quadrature, expected_blur_1d_bins),
-    solution!("expected_blur_2d", ClosedForm, expected_blur_2d),
-    solution!("expected_blur_2d_bins", Quadrature, expected_blur_2d_bins),
-    solution!("sphere_chords", ClosedForm, "cdf" => sphere_chords_cdf, "pdf" => sphere_chords_pdf),
-    solution!("sphere_centre_radiance_bins", Quadrature, sphere_centre_radiance_bins),
-];
+/// Every solution of this crate, subject by subject.
+pub fn solutions() -> impl Iterator<Item = &'static Solution> {
+    let subjects = [
+        ballistic::SOLUTIONS,
+        single_scattering::SOLUTIONS,
+        infinite_medium::SOLUTIONS,
+        diffusion::SOLUTIONS,
+        diffuse_sphere::SOLUTIONS,
+        interfaces::SOLUTIONS,
+        beams::SOLUTIONS,
+        dwell::SOLUTIONS,
+    ];
+    subjects.into_iter().flatten()
+}
 
 /// The solution of a name.
 pub fn find(name: &str) -> Option<&'static Solution> {
-    SOLUTIONS.iter().find(|solution| solution.name == name)
+    solutions().find(|solution| solution.name == name)
 }
 
 /// A solution, with its inputs as JSON.
@@ -47,6 +42,12 @@ pub struct Solution {
     pub tolerance: ToleranceClass,
     /// The quantities that it gives; a single one has no name.
     pub quantities: &'static [Quantity],
+    /// What it is, in one line.
+    pub summary: &'static str,
+    /// The unit of its value, "1" for a pure number.
+    pub unit: &'static str,
+    /// For an approximation, where and how well it holds; `None` for exact solutions.
+    pub approximate: Option<&'static str>,
 }
 
 /// One quantity of a solution.
@@ -65,8 +66,12 @@ pub struct Quantity {
 pub enum ToleranceClass {
     /// A closed form, to 1e-12.
     ClosedForm,
-    /// A bin or another quadrature, to 1e-9.
+    /// A diffusion formula, to 1e-10.
+    Diffusion,
+    /// A bin, a series or another quadrature, to 1e-9.
     Quadrature,
+    /// A bin of light of all orders, to 1e-8.
+    AllOrderBins,
 }
 
 impl ToleranceClass {
@@ -74,7 +79,9 @@ impl ToleranceClass {
     pub fn relative(self) -> f64 {
         match self {
             Self::ClosedForm => 1e-12,
+            Self::Diffusion => 1e-10,
             Self::Quadrature => 1e-9,
+            Self::AllOrderBins => 1e-8,
         }
     }
 }
@@ -84,37 +91,53 @@ impl Solution {
     pub fn quantity(&self, name: Option<&str>) -> Option<&'static Quantity> {
         self.quantities.iter().find(|quantity| quantity.name == name)
     }
+
+    /// With its summary and unit.
+    pub(crate) const fn describe(mut self, summary: &'static str, unit: &'static str) -> Self {
+        (self.summary, self.unit) = (summary, unit);
+        self
+    }
+
+    /// Marked as an approximation that holds as `validity` says.
+    #[expect(dead_code, reason = "the first approximations come with diffusion")]
+    pub(crate) const fn approximate(mut self, validity: &'static str) -> Self {
+        self.approximate = Some(validity);
+        self
+    }
 }
 
-/// One line of [`SOLUTIONS`].
+/// One line of a subject's list.
 macro_rules! solution {
     ($name:literal, $tolerance:expr, $function:path) => {
-        solution!(@ $name, $tolerance, (None, $function))
+        $crate::registry::solution!(@ $name, $tolerance, (None, $function))
     };
     ($name:literal, $tolerance:expr, $($quantity:literal => $function:path),+) => {
-        solution!(@ $name, $tolerance, $((Some($quantity), $function)),+)
+        $crate::registry::solution!(@ $name, $tolerance, $((Some($quantity), $function)),+)
     };
     (@ $name:literal, $tolerance:expr, $(($quantity:expr, $function:path)),+) => {
-        Solution {
+        $crate::registry::Solution {
             name: $name,
             tolerance: $tolerance,
-            quantities: &[$(Quantity {
+            quantities: &[$($crate::registry::Quantity {
                 name: $quantity,
-                evaluate: |inputs| $function(&typed(inputs)?),
-                keys: || fields_of_argument($function),
+                evaluate: |inputs| $function(&$crate::registry::typed(inputs)?),
+                keys: || $crate::registry::fields_of_argument($function),
             }),+],
+            summary: "",
+            unit: "",
+            approximate: None,
         }
     };
 }
-use solution;
+pub(crate) use solution;
 
 /// The inputs of a table row as the struct of a solution.
-fn typed<Inputs: DeserializeOwned>(inputs: &Map<String, Value>) -> Result<Inputs> {
+pub(crate) fn typed<Inputs: DeserializeOwned>(inputs: &Map<String, Value>) -> Result<Inputs> {
     serde_json::from_value(Value::Object(inputs.clone())).map_err(ReferenceError::Inputs)
 }
 
 /// The names of the fields of the struct that a solution takes.
-fn fields_of_argument<Inputs: DeserializeOwned>(
+pub(crate) fn fields_of_argument<Inputs: DeserializeOwned>(
     _: fn(&Inputs) -> Result<f64>,
 ) -> &'static [&'static str] {
     let mut fields: &[&str] = &[];
@@ -158,8 +181,16 @@ mod tests {
 
     #[test]
     fn names_are_unique() {
-        for (i, solution) in SOLUTIONS.iter().enumerate() {
-            assert!(SOLUTIONS[..i].iter().all(|other| other.name != solution.name));
+        let names: Vec<_> = solutions().map(|solution| solution.name).collect();
+        for (i, name) in names.iter().enumerate() {
+            assert!(!names[..i].contains(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn every_solution_says_what_it_is_and_in_which_unit() {
+        for solution in solutions() {
+            assert!(!solution.summary.is_empty() && !solution.unit.is_empty(), "{solution:?}");
         }
     }
 

@@ -21,7 +21,7 @@ use tpb_beams::kernel1d::Kernel1d;
 use tpb_beams::kernel2d::Kernel2d;
 use tpb_film::{FilmOptions, Layout, TimeAxis, TransientFilm};
 use tpb_optics::{Coefficients, Phase, Spectrum, Stream};
-use tpb_reference::beam_ray::{BeamRay1d, BeamRay2dBin, beam_ray_1d, beam_ray_2d_bins};
+use tpb_reference::beams::beam_ray::{BeamRay1d, BeamRay2dBin, beam_ray_1d, beam_ray_2d_bins};
 use tpb_scene::MediumId;
 
 use crate::error::Result;

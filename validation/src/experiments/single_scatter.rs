@@ -15,8 +15,8 @@ use rayon::prelude::*;
 use tpb_beams::{BeamOptions, KernelChoice};
 use tpb_path::PathOptions;
 use tpb_reference::ReferenceError;
-use tpb_reference::expected_blur::{Blur1dBin, expected_blur_1d_bins};
-use tpb_reference::expected_blur_disc::{Blur2dBin, expected_blur_2d_bins};
+use tpb_reference::beams::expected_blur::{Blur1dBin, expected_blur_1d_bins};
+use tpb_reference::beams::expected_blur_disc::{Blur2dBin, expected_blur_2d_bins};
 use tpb_reference::single_scattering::{SingleScatterBin, single_scatter_radiance_bins};
 use tpb_scene::TimeSpec;
 

@@ -36,7 +36,7 @@
 //! A ray of finite length, a boundary, other emitters than the isotropic point.
 
 use crate::error::{Result, finite_result, non_negative, path_bin, path_length, positive, require};
-use crate::path_integral::decaying_integral;
+use crate::numerics::path_integral::decaying_integral;
 use crate::phase::{Deflection, check_mean_cosine, henyey_greenstein};
 use serde::Deserialize;
 use std::f64::consts::PI;
@@ -187,5 +187,5 @@ impl RayToSource {
 }
 
 #[cfg(test)]
-#[path = "single_scattering_tests.rs"]
+#[path = "radiance_tests.rs"]
 mod tests;

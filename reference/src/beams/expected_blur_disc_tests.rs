@@ -1,8 +1,8 @@
 use super::*;
-use crate::beam_ray::{BeamRay2dBin, beam_ray_2d_bins};
-use crate::quadrature::tanh_sinh;
+use crate::beams::beam_ray::{BeamRay2dBin, beam_ray_2d_bins};
+use crate::numerics::quadrature::tanh_sinh;
+use crate::numerics::vector::fibonacci_direction;
 use crate::single_scattering::{SingleScatter, single_scatter_radiance};
-use crate::vector::fibonacci_direction;
 use proptest::prelude::*;
 
 const SAMPLE: Blur2d = Blur2d {

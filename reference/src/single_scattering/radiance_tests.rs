@@ -1,5 +1,5 @@
 use super::*;
-use crate::quadrature::{adaptive, tanh_sinh};
+use crate::numerics::quadrature::{adaptive, tanh_sinh};
 use proptest::prelude::*;
 
 const SAMPLE: SingleScatter = SingleScatter {

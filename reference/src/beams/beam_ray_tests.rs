@@ -1,5 +1,5 @@
 use super::*;
-use crate::quadrature::tanh_sinh;
+use crate::numerics::quadrature::tanh_sinh;
 use proptest::prelude::*;
 
 const EVER: f64 = 1e6;

@@ -36,9 +36,9 @@
 //! Directions are normalised here. Domain: R > 0; lengths of segments may be 0 but not infinite.
 
 use crate::error::{Result, finite_result, non_negative, path_bin, positive};
+use crate::numerics::vector::{self, Vector, cross, dot, length, scale, subtract, unit};
 use crate::phase::{Deflection, henyey_greenstein};
 use crate::single_scattering::check_medium;
-use crate::vector::{self, Vector, cross, dot, length, scale, subtract, unit};
 use serde::Deserialize;
 use std::f64::consts::PI;
 

@@ -32,9 +32,9 @@
 //! Domain: R > 0, b > 0 (a source on the ray gives a delta at x = z).
 
 use crate::error::{Result, finite, finite_result, path_bin, path_length, positive, require};
-use crate::path_integral::decaying_integral;
+use crate::numerics::path_integral::decaying_integral;
+use crate::numerics::quadrature::{Node, RELATIVE_TOLERANCE, adaptive, tanh_sinh};
 use crate::phase::{Deflection, henyey_greenstein};
-use crate::quadrature::{Node, RELATIVE_TOLERANCE, adaptive, tanh_sinh};
 use crate::single_scattering::check_medium;
 use serde::Deserialize;
 use std::f64::consts::PI;

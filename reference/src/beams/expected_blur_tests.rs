@@ -1,9 +1,9 @@
 use super::*;
-use crate::beam_ray::{BeamRay1d, beam_ray_1d};
+use crate::beams::beam_ray::{BeamRay1d, beam_ray_1d};
+use crate::numerics::vector::fibonacci_direction;
 use crate::single_scattering::{
     SingleScatter, SingleScatterBin, single_scatter_radiance, single_scatter_radiance_bins,
 };
-use crate::vector::fibonacci_direction;
 use proptest::prelude::*;
 
 const SAMPLE: Blur1d = Blur1d {

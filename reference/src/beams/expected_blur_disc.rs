@@ -22,7 +22,7 @@
 //! that see one point, and p then stays inside the average.
 
 use crate::error::{Result, finite, finite_result, path_bin, path_length, positive, require};
-use crate::path_integral::decaying_integral;
+use crate::numerics::path_integral::decaying_integral;
 use crate::single_scattering::check_medium;
 use serde::Deserialize;
 use std::f64::consts::PI;

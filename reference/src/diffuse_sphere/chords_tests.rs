@@ -1,5 +1,5 @@
 use super::*;
-use crate::quadrature::adaptive;
+use crate::numerics::quadrature::adaptive;
 
 fn close(value: f64, expected: f64, relative: f64) {
     assert!((value - expected).abs() <= relative * expected.abs(), "{value:e} for {expected:e}");

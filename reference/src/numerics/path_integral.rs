@@ -10,7 +10,7 @@
 //! paths, then takes a few panels. The break points are the scales and a few decay lengths.
 
 use crate::error::Result;
-use crate::quadrature::{RELATIVE_TOLERANCE, adaptive};
+use crate::numerics::quadrature::{RELATIVE_TOLERANCE, adaptive};
 
 /// The integral above; the integrand gets q and q − q0.
 pub(crate) fn decaying_integral(

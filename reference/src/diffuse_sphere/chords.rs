@@ -25,8 +25,8 @@
 //! where P_j is f_{n−1} on cell j: products and integrals of positive functions alone. Tails of
 //! 1e-200 have as many digits as the centre. Differences of the cdf are never formed either.
 
-use crate::bernstein::Bernstein;
 use crate::error::{Result, require};
+use crate::numerics::bernstein::Bernstein;
 use serde::Deserialize;
 use std::f64::consts::PI;
 
@@ -207,5 +207,5 @@ fn check_count(chords: u32) -> Result<f64> {
 }
 
 #[cfg(test)]
-#[path = "diffuse_sphere_tests.rs"]
+#[path = "chords_tests.rs"]
 mod tests;

@@ -1,0 +1,27 @@
+//! Ray-beam kernels, and what beam estimates are expected to give.
+
+pub mod beam_ray;
+pub mod expected_blur;
+pub mod expected_blur_disc;
+
+use crate::registry::Solution;
+use crate::registry::ToleranceClass::{ClosedForm, Quadrature};
+use crate::registry::solution;
+use beam_ray::{beam_ray_1d, beam_ray_2d_bins};
+use expected_blur::{expected_blur_1d, expected_blur_1d_bins};
+use expected_blur_disc::{expected_blur_2d, expected_blur_2d_bins};
+
+pub(crate) static SOLUTIONS: &[Solution] = &[
+    solution!("beam_ray_1d", ClosedForm, beam_ray_1d)
+        .describe("energy that the 1D kernel carries from a beam to a ray", "J/(m^2 sr)"),
+    solution!("beam_ray_2d_bins", Quadrature, beam_ray_2d_bins)
+        .describe("energy that the 2D kernel carries to a ray within a bin", "J/(m^2 sr)"),
+    solution!("expected_blur_1d", Quadrature, expected_blur_1d)
+        .describe("expected value of the 1D beam estimate of a point pulse", "W/(m^2 sr)"),
+    solution!("expected_blur_1d_bins", Quadrature, expected_blur_1d_bins)
+        .describe("the same within a bin of time", "J/(m^2 sr)"),
+    solution!("expected_blur_2d", ClosedForm, expected_blur_2d)
+        .describe("expected value of the 2D beam estimate of a point pulse", "W/(m^2 sr)"),
+    solution!("expected_blur_2d_bins", Quadrature, expected_blur_2d_bins)
+        .describe("the same within a bin of time", "J/(m^2 sr)"),
+];

@@ -1,0 +1,6 @@
+//! What solutions are computed with; no physics.
+
+pub(crate) mod bernstein;
+pub(crate) mod path_integral;
+pub mod quadrature;
+pub(crate) mod vector;
