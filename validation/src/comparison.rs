@@ -1,13 +1,13 @@
 //! One estimator against one expected cube: batches in, outcome with a z map out.
 
-use tpb_film::Layout;
 use tpb_scene::Scene;
 
 use crate::contrasts::{LinearContrast, targets};
 use crate::cube::Cube;
 use crate::error::Result;
-use crate::experiment::{Outcome, ZMap};
+use crate::experiment::{Context, Outcome, ZMap};
 use crate::measure::{BatchPlan, Estimator, batches};
+use crate::sabotage::Sabotage;
 use crate::statistics::{Batches, Criterion, judge};
 
 /// What is compared with what, and how.
@@ -16,12 +16,8 @@ pub struct Comparison<'a> {
     pub scene: &'a Scene,
     /// By whom.
     pub estimator: Estimator,
-    /// Into which film.
-    pub layout: Layout,
     /// In which batches.
     pub plan: BatchPlan,
-    /// A factor on the estimate (1, but for sabotage).
-    pub factor: f64,
     /// What is expected.
     pub expected: &'a Cube,
     /// The expectation by a coarser rule, which tells its error.
@@ -30,21 +26,40 @@ pub struct Comparison<'a> {
     pub contrasts: &'a [LinearContrast],
     /// What is asked of them.
     pub criterion: Criterion,
+    /// The cosine, or the η², that a twin's estimate lacks, pixel by pixel
+    /// ([`Sabotage::drops_a_factor`]); empty where that is not tried.
+    pub dropped: &'a [f64],
 }
 
 impl Comparison<'_> {
-    /// Renders and judges.
-    pub fn run(self) -> Result<Outcome> {
+    /// Renders the scene's film and judges; a twin's defect that acts on window or estimate is
+    /// brought about here.
+    pub fn run(self, context: &Context) -> Result<Outcome> {
         let mut values = Batches::new();
         let mut cells = CellMoments::new(self.expected.values.len());
-        batches(self.scene, &self.estimator, self.layout, &self.plan, |cube| {
-            values.push(self.contrasts.iter().map(|c| self.factor * c.value(cube)).collect());
-            cells.add(cube, self.factor);
+        let layout = context.layout(&self.scene.film)?;
+        batches(self.scene, &self.estimator, layout, &self.plan, |cube| {
+            let cube = &self.spoil(cube, context);
+            values.push(self.contrasts.iter().map(|c| c.value(cube)).collect());
+            cells.add(cube);
         })?;
         let targets = targets(self.contrasts, self.expected, self.coarser);
         let mut outcome: Outcome = judge(&targets, &values, &self.criterion).into();
         outcome.z_map = Some(cells.z_map(self.expected));
         Ok(outcome)
+    }
+
+    fn spoil(&self, cube: &Cube, context: &Context) -> Cube {
+        let mut cube = cube.clone();
+        cube.scale(context.estimate_factor());
+        if context.sabotage.is_some_and(Sabotage::drops_a_factor) {
+            for (pixel, factor) in self.dropped.iter().enumerate() {
+                for cell in cube.pixel_mut(pixel) {
+                    *cell /= factor;
+                }
+            }
+        }
+        cube
     }
 }
 
@@ -60,13 +75,13 @@ impl CellMoments {
         Self { batches: 0.0, mean: vec![0.0; cells], squares: vec![0.0; cells] }
     }
 
-    fn add(&mut self, cube: &Cube, factor: f64) {
+    fn add(&mut self, cube: &Cube) {
         self.batches += 1.0;
         let moments = self.mean.iter_mut().zip(&mut self.squares);
         for ((mean, squares), value) in moments.zip(&cube.values) {
-            let before = factor * value - *mean;
+            let before = value - *mean;
             *mean += before / self.batches;
-            *squares += before * (factor * value - *mean);
+            *squares += before * (value - *mean);
         }
     }
 
@@ -94,7 +109,8 @@ mod tests {
         for value in [1.0, 2.0, 3.0] {
             let mut cube = Cube::zero(1, 1, 1);
             cube.pixel_mut(0)[1] = value;
-            cells.add(&cube, 2.0);
+            cube.scale(2.0);
+            cells.add(&cube);
         }
         // Mean 4, standard error 2/√3.
         let z = cells.z_map(&Cube::zero(1, 1, 1)).rows[0][0];

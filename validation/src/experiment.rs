@@ -5,18 +5,23 @@
 //! fixed by the [`Effort`] (never by the clock, save in equal-time runs), its random numbers by
 //! the seed: it repeats to the bit.
 //!
-//! A [`Twin`] is the same experiment on programs that were sabotaged on purpose, at the same
-//! budget. It passes if and only if the sabotage is found to be a significant *difference*; being
-//! unable to tell is not enough. Without twins, a suite that cannot fail would look like one that
-//! never has to.
+//! The suite's false-alarm probability is shared out over all experiments that rest on chance before
+//! any is run: [`Context::level`]. Each of them names its sabotaged twins
+//! ([`crate::sabotage`]).
 
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use tpb_film::Layout;
+use tpb_scene::{FilmSpec, Scene, SceneParts};
+
 use crate::equal_time::EqualTime;
 use crate::error::Result;
-use crate::statistics::{Contrast, Finding, Judgement};
+use crate::measure;
+use crate::registry;
+use crate::sabotage::Sabotage;
+use crate::statistics::{Contrast, Criterion, Finding, Judgement};
 
 /// How much work an experiment may do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,7 +42,7 @@ impl Effort {
 }
 
 /// What all experiments of a run share.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Context {
     /// How much work to do.
     pub effort: Effort,
@@ -47,12 +52,46 @@ pub struct Context {
     pub out: PathBuf,
     /// Root of the workspace's validation data: scenes, tables, reference cubes.
     pub data: PathBuf,
+    /// An experiment's share of the suite's false-alarm probability.
+    pub level: f64,
+    /// The defect that a twin's run must bring about.
+    pub sabotage: Option<Sabotage>,
 }
 
 impl Context {
-    /// A context on the data that ship with this crate.
+    /// A sound context on the data that ship with this crate.
     pub fn new(effort: Effort, seed: u64, out: PathBuf) -> Self {
-        Self { effort, seed, out, data: PathBuf::from(env!("CARGO_MANIFEST_DIR")) }
+        let data = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+        Self { effort, seed, out, data, level: registry::level(effort), sabotage: None }
+    }
+
+    /// What is asked of estimators without bias: a margin of 0.5 %.
+    pub fn unbiased(&self) -> Criterion {
+        Criterion { margin: 0.005, confidence: 0.99, level: self.level }
+    }
+
+    /// What is asked of blurred estimates against their exact expected blur: a margin of 1 %.
+    pub fn blurred(&self) -> Criterion {
+        Criterion { margin: 0.01, confidence: 0.99, level: self.level }
+    }
+
+    /// The scene, with the twin's defect if it acts there.
+    pub fn assemble(&self, mut parts: SceneParts) -> Result<Scene> {
+        if let Some(sabotage) = self.sabotage {
+            sabotage.spoil(&mut parts);
+        }
+        Ok(Scene::assemble(parts)?)
+    }
+
+    /// The film that a scene asks for, with the twin's defect if it acts there.
+    pub fn layout(&self, film: &FilmSpec) -> Result<Layout> {
+        let width = film.time.map_or(0.0, |time| time.bin_width_opl);
+        measure::layout(film, self.sabotage.map_or(0.0, |s| s.window_shift(width)))
+    }
+
+    /// The twin's factor on estimates; 1 if its defect acts elsewhere.
+    pub fn estimate_factor(&self) -> f64 {
+        self.sabotage.map_or(1.0, Sabotage::estimate_factor)
     }
 
     /// A shipped scene.
@@ -142,6 +181,11 @@ impl Outcome {
         self
     }
 
+    /// The contrast with the smallest p value.
+    pub fn most_significant(&self) -> Option<&Contrast> {
+        self.contrasts.iter().min_by(|a, b| a.p.total_cmp(&b.p))
+    }
+
     /// Adds a remark.
     #[must_use]
     pub fn with_note(mut self, note: impl Into<String>) -> Self {
@@ -180,120 +224,39 @@ fn verdict(finding: Finding) -> Verdict {
     if finding == Finding::Equivalent { Verdict::Passed } else { Verdict::Failed }
 }
 
+/// How an experiment comes to its verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Without chance: to rounding.
+    Exact,
+    /// By tests at [`Context::level`]; has twins.
+    Statistical,
+    /// By tests at [`Context::level`], with a negative control of its own in the same run.
+    SelfControlled,
+    /// Must be rejected.
+    Twin,
+}
+
 /// One question and its answer.
-pub trait Experiment: Sync {
+pub trait Experiment: Send + Sync {
     /// Its name, by which filters find it: `group/case`.
     fn name(&self) -> String;
 
     /// What is compared with what, in one line.
     fn description(&self) -> String;
 
+    /// How it comes to its verdict.
+    fn kind(&self) -> Kind {
+        Kind::Statistical
+    }
+
+    /// The defects by which it must be rejected; at least one of a statistical experiment in
+    /// [`Effort::Full`], a few representative ones in [`Effort::Quick`]. `run` brings them about
+    /// (see [`crate::sabotage`]).
+    fn twins(&self, _effort: Effort) -> Vec<Sabotage> {
+        Vec::new()
+    }
+
     /// Carries it out.
     fn run(&self, context: &Context) -> Result<Outcome>;
-}
-
-/// A deliberate defect of size given by its variant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Sabotage {
-    /// The scene's scattering coefficient times this factor (absorption unchanged).
-    SigmaS(f64),
-    /// The film's window later by this fraction of a bin.
-    TimeShift(f64),
-    /// The estimate of a kernel times this factor.
-    KernelNormalisation(f64),
-}
-
-impl Sabotage {
-    /// Factor on the scattering coefficient.
-    pub fn sigma_s_factor(sabotage: Option<Self>) -> f64 {
-        if let Some(Self::SigmaS(factor)) = sabotage { factor } else { 1.0 }
-    }
-
-    /// Shift of the window in bins.
-    pub fn shift_bins(sabotage: Option<Self>) -> f64 {
-        if let Some(Self::TimeShift(bins)) = sabotage { bins } else { 0.0 }
-    }
-
-    /// Factor on the estimate.
-    pub fn estimate_factor(sabotage: Option<Self>) -> f64 {
-        if let Some(Self::KernelNormalisation(factor)) = sabotage { factor } else { 1.0 }
-    }
-
-    fn label(self) -> &'static str {
-        match self {
-            Self::SigmaS(_) => "sigma-s",
-            Self::TimeShift(_) => "time-shift",
-            Self::KernelNormalisation(_) => "kernel-normalisation",
-        }
-    }
-}
-
-/// An experiment on sabotaged programs, which must be rejected.
-pub struct Twin<E> {
-    sabotage: Sabotage,
-    inner: E,
-}
-
-impl<E: Experiment> Twin<E> {
-    /// `inner` must have been made with `sabotage`.
-    pub fn new(sabotage: Sabotage, inner: E) -> Self {
-        Self { sabotage, inner }
-    }
-}
-
-impl<E: Experiment> Experiment for Twin<E> {
-    fn name(&self) -> String {
-        format!("control/{}/{}", self.sabotage.label(), self.inner.name())
-    }
-
-    fn description(&self) -> String {
-        format!("must be rejected: {:?} in {}", self.sabotage, self.inner.name())
-    }
-
-    fn run(&self, context: &Context) -> Result<Outcome> {
-        let mut outcome = self.inner.run(context)?;
-        let rejected = outcome.finding == Finding::Different;
-        outcome.verdict = if rejected { Verdict::Passed } else { Verdict::Failed };
-        (outcome.false_alarm, outcome.unresolved) = (0.0, outcome.miss);
-        outcome.notes = vec![if rejected {
-            "rejected, as it must be".to_owned()
-        } else {
-            format!("NOT rejected: {:?}", outcome.finding)
-        }];
-        Ok(outcome)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    struct Fixed(Finding);
-
-    impl Experiment for Fixed {
-        fn name(&self) -> String {
-            "fixed".into()
-        }
-
-        fn description(&self) -> String {
-            String::new()
-        }
-
-        fn run(&self, _: &Context) -> Result<Outcome> {
-            Ok(Outcome { finding: self.0, ..Outcome::exact(true, vec![]) })
-        }
-    }
-
-    #[test]
-    fn a_twin_passes_only_when_the_sabotage_is_found() {
-        let context = Context::new(Effort::Quick, 1, PathBuf::new());
-        for (finding, verdict) in [
-            (Finding::Different, Verdict::Passed),
-            (Finding::Unresolved, Verdict::Failed),
-            (Finding::Equivalent, Verdict::Failed),
-        ] {
-            let twin = Twin::new(Sabotage::SigmaS(1.01), Fixed(finding));
-            assert_eq!(twin.run(&context).unwrap().verdict, verdict, "{finding:?}");
-        }
-    }
 }

@@ -2,7 +2,7 @@
 //! other, and the statistics that judge them.
 //!
 //! * [`statistics`]: batches, tests, equivalence, ratios, the split of an error.
-//! * [`experiment`]: what an experiment is; its sabotaged twin; [`registry`]: all of them.
+//! * [`experiment`]: what an experiment is; [`sabotage`]: its sabotaged twins; [`registry`]: all.
 //! * [`experiments`]: the questions themselves, one module for each subject.
 //! * [`cube`], [`contrasts`], [`measure`], [`comparison`]: time-resolved images as numbers, reduced to the few
 //!   that are judged, batch by batch.
@@ -21,6 +21,7 @@ pub mod measure;
 pub mod reference_cube;
 pub mod registry;
 pub mod report;
+pub mod sabotage;
 pub mod scenes;
 pub mod statistics;
 pub mod suite;
@@ -28,4 +29,5 @@ pub mod suite;
 pub use error::{Result, ValidationError};
 pub use tpb_render::with_threads;
 
-pub use experiment::{Context, Effort, Experiment, Outcome, Sabotage, Twin, Verdict};
+pub use experiment::{Context, Effort, Experiment, Kind, Outcome, Verdict};
+pub use sabotage::{Sabotage, Twin};

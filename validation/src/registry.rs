@@ -1,78 +1,99 @@
 //! All experiments: one line adds one.
+//!
+//! Each module of [`crate::experiments`] lists its own; the twins follow their experiment.
 
-use crate::experiment::{Effort, Experiment, Sabotage, Twin};
-use crate::experiments::energy::SumOfBins;
-use crate::experiments::equal_time::EqualTimeRun;
-use crate::experiments::fresnel::FresnelChoice;
-use crate::experiments::kernels::KernelPairs;
-use crate::experiments::samplers::Samplers;
-use crate::experiments::single_scatter::{SingleScatter, Who};
-use crate::experiments::sphere::SphereOrder;
-use crate::experiments::tables::Tables;
+use std::sync::Arc;
 
-/// The experiments of a run, in their order.
-pub fn experiments(effort: Effort) -> Vec<Box<dyn Experiment>> {
-    let mut list: Vec<Box<dyn Experiment>> = vec![Box::new(Tables)];
-    list.extend(Samplers::ALL.map(|group| Box::new(group) as Box<dyn Experiment>));
-    list.push(Box::new(KernelPairs::OneD));
-    list.push(Box::new(KernelPairs::TwoD));
-    list.push(Box::new(SumOfBins::Path));
-    list.push(Box::new(SumOfBins::Beams));
-    list.push(Box::new(FresnelChoice::Path));
-    list.push(Box::new(FresnelChoice::Beams));
-    for order in 1..=effort.pick(4, 8) {
-        list.push(Box::new(SphereOrder::new(order)));
-    }
-    list.push(Box::new(SingleScatter::new(Who::Path, 0.0)));
-    list.push(Box::new(SingleScatter::new(Who::Path, 0.6)));
-    list.push(Box::new(SingleScatter::new(Who::Beams1d, 0.0)));
-    list.push(Box::new(SingleScatter::new(Who::Beams1d, 0.6)));
-    list.push(Box::new(SingleScatter::new(Who::Beams2d, 0.0)));
-    list.extend(controls(effort));
-    list.push(Box::new(EqualTimeRun {
-        scene: "cornell-blocks",
-        beams_win: true,
-        path_complete: true,
-    }));
-    if effort == Effort::Full {
-        let caustic =
-            |scene, path_complete| EqualTimeRun { scene, beams_win: false, path_complete };
-        list.push(Box::new(caustic("mirror-caustic", true)));
-        list.push(Box::new(caustic("mirror-caustic-point", false)));
+use crate::experiment::{Effort, Experiment, Kind};
+use crate::experiments::{
+    energy, equal_time, fresnel, kernels, samplers, single_scatter, sphere, tables,
+};
+use crate::sabotage::Twin;
+use crate::suite::SUITE_LEVEL;
+
+/// A list of experiments.
+pub type Experiments = Vec<Arc<dyn Experiment>>;
+
+/// The experiments of a run in their order, each with its twins.
+pub fn experiments(effort: Effort) -> Experiments {
+    let mut list = Experiments::new();
+    for experiment in sound(effort) {
+        let twin = |sabotage| Arc::new(Twin::new(sabotage, experiment.clone())) as _;
+        let twins: Experiments = experiment.twins(effort).into_iter().map(twin).collect();
+        list.push(experiment);
+        list.extend(twins);
     }
     list
 }
 
-/// Sabotaged twins, which must be rejected.
-fn controls(effort: Effort) -> Vec<Box<dyn Experiment>> {
-    let single = |who, sabotage| Twin::new(sabotage, SingleScatter::new(who, 0.0).with(sabotage));
-    let (sigma, late) = (Sabotage::SigmaS(1.01), Sabotage::TimeShift(0.5));
-    let sphere = SphereOrder { order: 3, sabotage: Some(late) };
-    let mut list: Vec<Box<dyn Experiment>> = vec![
-        Box::new(single(Who::Path, sigma)),
-        Box::new(Twin::new(late, sphere)),
-        Box::new(single(Who::Beams1d, Sabotage::KernelNormalisation(1.02))),
-    ];
-    if effort == Effort::Full {
-        list.push(Box::new(single(Who::Beams2d, Sabotage::KernelNormalisation(1.02))));
-    }
-    list
+/// The share of the suite's false-alarm probability that each experiment has, whichever are run.
+pub fn level(effort: Effort) -> f64 {
+    let by_chance = |e: &&Arc<dyn Experiment>| e.kind() != Kind::Exact;
+    SUITE_LEVEL / sound(effort).iter().filter(by_chance).count() as f64
+}
+
+fn sound(effort: Effort) -> Experiments {
+    [
+        tables::all(),
+        samplers::all(),
+        kernels::all(),
+        energy::all(),
+        fresnel::all(),
+        sphere::all(effort),
+        single_scatter::all(effort),
+        equal_time::all(effort),
+    ]
+    .concat()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use std::collections::BTreeSet;
 
+    use super::*;
+    use crate::sabotage::Sabotage;
+
     #[test]
-    fn names_are_unique_and_three_kinds_of_sabotage_are_tried() {
+    fn names_are_unique() {
         for effort in [Effort::Quick, Effort::Full] {
             let names: Vec<String> = experiments(effort).iter().map(|e| e.name()).collect();
             let unique: BTreeSet<&String> = names.iter().collect();
             assert_eq!(unique.len(), names.len(), "{names:?}");
-            for kind in ["sigma-s", "time-shift", "kernel-normalisation"] {
-                assert!(names.iter().any(|name| name.starts_with(&format!("control/{kind}/"))));
+        }
+    }
+
+    #[test]
+    fn every_experiment_that_rests_on_chance_has_a_twin() {
+        for experiment in sound(Effort::Full) {
+            let twins = experiment.twins(Effort::Full).len();
+            match experiment.kind() {
+                Kind::Statistical => assert!(twins > 0, "{} has no twin", experiment.name()),
+                Kind::SelfControlled | Kind::Exact => {}
+                Kind::Twin => panic!("{} is a twin of nothing", experiment.name()),
             }
+        }
+    }
+
+    #[test]
+    fn every_kind_of_sabotage_is_tried() {
+        let names: Vec<String> = experiments(Effort::Full).iter().map(|e| e.name()).collect();
+        // The matrix adds cosines and null boundaries.
+        for label in
+            Sabotage::LABELS.into_iter().filter(|l| !["cosine", "null-segment"].contains(l))
+        {
+            let tried = names.iter().any(|name| name.starts_with(&format!("control/{label}/")));
+            assert!(tried, "{label}");
+        }
+        let quick = experiments(Effort::Quick);
+        assert!(quick.iter().any(|e| e.kind() == Kind::Twin));
+    }
+
+    #[test]
+    fn shares_add_up_to_the_level_of_the_suite() {
+        for effort in [Effort::Quick, Effort::Full] {
+            let by_chance = sound(effort).iter().filter(|e| e.kind() != Kind::Exact).count();
+            let sum = by_chance as f64 * level(effort);
+            assert!((sum / SUITE_LEVEL - 1.0).abs() < 1e-12);
         }
     }
 }

@@ -6,13 +6,14 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::error::{Result, ValidationError};
 use crate::experiment::{Context, Experiment, Outcome, Verdict, ZMap};
 use crate::suite::{Record, SuiteResult};
 
 /// The plan: what will be run.
-pub fn plan(experiments: &[Box<dyn Experiment>]) -> Vec<String> {
+pub fn plan(experiments: &[Arc<dyn Experiment>]) -> Vec<String> {
     let width = width(experiments.iter().map(|e| e.name()));
     experiments.iter().map(|e| format!("  {:width$}  {}", e.name(), e.description())).collect()
 }

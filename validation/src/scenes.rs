@@ -14,6 +14,7 @@ use tpb_scene::{
 };
 
 use crate::error::{Result, ValidationError};
+use crate::experiment::Context;
 
 /// A camera at the origin that looks along +z, with a square film of one channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,17 +100,17 @@ pub fn unit_point(position: DVec3) -> EmitterPart {
 }
 
 /// Infinite fog with a point light of unit power.
-pub fn infinite_fog(view: &View, fog: &Fog, light: DVec3) -> Result<Scene> {
+pub fn infinite_fog(context: &Context, view: &View, fog: &Fog, light: DVec3) -> Result<Scene> {
     let mut parts = view.parts();
     parts.media = vec![fog.medium()];
     parts.background = Some(MediumId(0));
     parts.emitters = vec![unit_point(light)];
-    Ok(Scene::assemble(parts)?)
+    context.assemble(parts)
 }
 
 /// The inside of a unit sphere with a diffuse wall; camera and a point light of unit power at its
 /// centre.
-pub fn diffuse_sphere(view: &View, albedo: f64) -> Result<Scene> {
+pub fn diffuse_sphere(context: &Context, view: &View, albedo: f64) -> Result<Scene> {
     let mut parts = view.parts();
     let wall = Reflector::Diffuse(Rgb::splat(albedo));
     let sphere = Sphere { centre: DVec3::ZERO, radius: 1.0, flipped: true };
@@ -121,7 +122,7 @@ pub fn diffuse_sphere(view: &View, albedo: f64) -> Result<Scene> {
         radiance: None,
     }];
     parts.emitters = vec![unit_point(DVec3::ZERO)];
-    Ok(Scene::assemble(parts)?)
+    context.assemble(parts)
 }
 
 /// A shipped scene, as its file says.

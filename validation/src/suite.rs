@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -59,7 +60,7 @@ impl SuiteResult {
 /// Runs experiments, telling `each` record as it is made. `repeat` makes the command that repeats
 /// the experiment of a name.
 pub fn run_suite(
-    experiments: &[Box<dyn Experiment>],
+    experiments: &[Arc<dyn Experiment>],
     context: &Context,
     repeat: impl Fn(&str) -> String,
     mut each: impl FnMut(&Record),
@@ -205,10 +206,10 @@ mod tests {
     fn what_fails_leaves_tables_and_what_breaks_says_why() {
         let out = std::env::temp_dir().join(format!("tpb-suite-{}", std::process::id()));
         let context = Context::new(Effort::Quick, 1, out.clone());
-        let experiments: Vec<Box<dyn Experiment>> = vec![
-            Box::new(Scripted("a/sound", Some(Finding::Equivalent))),
-            Box::new(Scripted("a/wrong", Some(Finding::Different))),
-            Box::new(Scripted("a/broken", None)),
+        let experiments: Vec<Arc<dyn Experiment>> = vec![
+            Arc::new(Scripted("a/sound", Some(Finding::Equivalent))),
+            Arc::new(Scripted("a/wrong", Some(Finding::Different))),
+            Arc::new(Scripted("a/broken", None)),
         ];
         let mut told = 0;
         let result = run_suite(&experiments, &context, |name| format!("run {name}"), |_| told += 1);

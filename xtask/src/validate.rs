@@ -1,6 +1,7 @@
 //! `cargo xtask validate` and `cargo xtask reference-render`: parse, call `tpb-validation`, print.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 use clap::Args;
@@ -76,7 +77,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Outcome {
     let effort = if args.full { Effort::Full } else { Effort::Quick };
     let out = args.out.clone().unwrap_or_else(|| root().join("target/validation"));
     let context = Context::new(effort, args.seed, out);
-    let chosen: Vec<Box<dyn Experiment>> = registry::experiments(effort)
+    let chosen: Vec<Arc<dyn Experiment>> = registry::experiments(effort)
         .into_iter()
         .filter(|e| args.filter.as_ref().is_none_or(|glob| suite::matches(glob, &e.name())))
         .collect();

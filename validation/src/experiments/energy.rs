@@ -4,6 +4,8 @@
 //! into one without a time axis. Pixel by pixel the sums agree to rounding: of f64 for the steady
 //! image that the transient film keeps, of f32 for the arrays.
 
+use std::sync::Arc;
+
 use tpb_beams::BeamOptions;
 use tpb_film::{Layout, TimeAxis};
 use tpb_path::PathOptions;
@@ -13,8 +15,9 @@ use tpb_scene::load::{Override, load_scene};
 
 use crate::cube::Cube;
 use crate::error::{Result, ValidationError};
-use crate::experiment::{Context, Experiment, Outcome};
+use crate::experiment::{Context, Experiment, Kind, Outcome};
 use crate::measure::{Estimator, render};
+use crate::registry::Experiments;
 
 const F64_TOLERANCE: f64 = 1e-11;
 const F32_TOLERANCE: f64 = 2e-6;
@@ -26,6 +29,11 @@ pub enum SumOfBins {
     Path,
     /// Photon beams.
     Beams,
+}
+
+/// Each method.
+pub fn all() -> Experiments {
+    vec![Arc::new(SumOfBins::Path), Arc::new(SumOfBins::Beams)]
 }
 
 impl SumOfBins {
@@ -49,6 +57,10 @@ impl Experiment for SumOfBins {
 
     fn description(&self) -> String {
         "bins + before + after against the steady render of the same seed".into()
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Exact
     }
 
     fn run(&self, context: &Context) -> Result<Outcome> {

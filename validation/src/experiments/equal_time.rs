@@ -2,7 +2,7 @@
 //!
 //! Three claims, each with its false-alarm probability:
 //!
-//! 1. the path tracer's bias is consistent with 0 (pixel-wise test, level 1e-7);
+//! 1. the path tracer's bias is consistent with 0 (pixel-wise test, at the level of an experiment);
 //! 2. where it is expected, beams have less NMSE · CPU s than the path tracer, one-sided at 1e-3;
 //!    the chance to miss an advantage as large as the observed one is stated as unresolved;
 //! 3. the beams' error is resolved: its relative standard error is below a quarter.
@@ -10,6 +10,7 @@
 //! Squared biases are reported. Fireflies (more than one replicate beyond three medians) add the
 //! ratio of medians with a bootstrap interval.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use tpb_beams::BeamOptions;
@@ -17,14 +18,12 @@ use tpb_path::PathOptions;
 
 use crate::equal_time::{CONFIDENCE, EqualTime, EqualTimePlan, MethodResult};
 use crate::error::Result;
-use crate::experiment::{Context, Experiment, Outcome};
+use crate::experiment::{Context, Effort, Experiment, Kind, Outcome};
 use crate::measure::Estimator;
 use crate::reference_cube::ReferenceCube;
+use crate::registry::Experiments;
 use crate::scenes::shipped;
 use crate::statistics::{bootstrap, ratio::RATIO_LEVEL};
-
-/// Level of the test for bias.
-const BIAS_LEVEL: f64 = 1e-7;
 
 /// A scene for both methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +35,21 @@ pub struct EqualTimeRun {
     /// Whether the path tracer finds all light, so that it may be tested for bias and its
     /// reference is the truth.
     pub path_complete: bool,
+}
+
+/// Each scene; caustics take long.
+pub fn all(effort: Effort) -> Experiments {
+    let mut list: Experiments = vec![Arc::new(EqualTimeRun {
+        scene: "cornell-blocks",
+        beams_win: true,
+        path_complete: true,
+    })];
+    if effort == Effort::Full {
+        for (scene, path_complete) in [("mirror-caustic", true), ("mirror-caustic-point", false)] {
+            list.push(Arc::new(EqualTimeRun { scene, beams_win: false, path_complete }));
+        }
+    }
+    list
 }
 
 impl EqualTimeRun {
@@ -86,13 +100,17 @@ impl Experiment for EqualTimeRun {
         format!("path and beams at equal time on {}, against a long path render", self.scene)
     }
 
+    fn kind(&self) -> Kind {
+        Kind::SelfControlled
+    }
+
     fn run(&self, context: &Context) -> Result<Outcome> {
         let (result, note) = self.compare(context)?;
         let [path, beams] = result.methods.as_slice() else {
             return Ok(Outcome::exact(false, vec!["two methods are compared".into()]));
         };
         let bias_p = EqualTime::bias_p(path);
-        let path_sound = !self.path_complete || bias_p > BIAS_LEVEL;
+        let path_sound = !self.path_complete || bias_p > context.level;
         let wins = result.factor.is_some_and(|factor| factor.p_at_most_one < RATIO_LEVEL);
         let resolved = beams.split.nmse.standard_error < 0.25 * beams.split.nmse.value;
         let mut notes: Vec<String> = note.into_iter().collect();
@@ -100,7 +118,7 @@ impl Experiment for EqualTimeRun {
         let mut outcome =
             Outcome::exact(path_sound && resolved && (wins || !self.beams_win), notes);
         outcome.worst_p = self.path_complete.then_some(bias_p);
-        outcome.false_alarm = if self.path_complete { BIAS_LEVEL } else { 0.0 };
+        outcome.false_alarm = if self.path_complete { context.level } else { 0.0 };
         outcome.unresolved =
             if self.beams_win { result.factor.map_or(1.0, |factor| factor.miss) } else { 0.0 };
         outcome.equal_time = Some(result);

@@ -7,6 +7,8 @@
 //! written here from the amplitudes r_s = −sin(θ_i − θ_t)/sin(θ_i + θ_t),
 //! r_p = tan(θ_i − θ_t)/tan(θ_i + θ_t).
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 use tpb_beams::BeamOptions;
 use tpb_optics::Rgb;
@@ -19,10 +21,12 @@ use tpb_scene::{
 use crate::contrasts::{LinearContrast, targets};
 use crate::cube::Cube;
 use crate::error::Result;
-use crate::experiment::{Context, Experiment, Outcome};
-use crate::measure::{BatchPlan, Estimator, batches, layout};
+use crate::experiment::{Context, Effort, Experiment, Outcome};
+use crate::measure::{BatchPlan, Estimator, batches};
+use crate::registry::Experiments;
+use crate::sabotage::Sabotage;
 use crate::scenes::{View, only_depth};
-use crate::statistics::{Batches, Criterion, Target, judge};
+use crate::statistics::{Batches, Target, judge};
 
 const TIME: TimeSpec = TimeSpec { start_opl: 0.0, bin_width_opl: 0.25, bins: 160 };
 const REFLECTED: f64 = 3.0;
@@ -43,12 +47,19 @@ pub enum FresnelChoice {
     Beams,
 }
 
+/// Each method.
+pub fn all() -> Experiments {
+    vec![Arc::new(FresnelChoice::Path), Arc::new(FresnelChoice::Beams)]
+}
+
 /// What is expected of one case.
 struct Expected {
     reflected: f64,
     transmitted: f64,
     reflected_opl: f64,
     transmitted_opl: f64,
+    /// (η_i/η_t)², by which refraction changes radiance.
+    eta_squared: f64,
 }
 
 fn expected(angle: f64, inside: bool) -> Expected {
@@ -62,6 +73,7 @@ fn expected(angle: f64, inside: bool) -> Expected {
             transmitted: 0.0,
             reflected_opl,
             transmitted_opl: 0.0,
+            eta_squared: 1.0,
         };
         return nothing;
     }
@@ -74,6 +86,7 @@ fn expected(angle: f64, inside: bool) -> Expected {
         transmitted: (1.0 - reflectance) * TRANSMITTED * (eta_i / eta_t).powi(2),
         reflected_opl,
         transmitted_opl: eta_i / theta_i.cos() + eta_t / theta_t.cos(),
+        eta_squared: (eta_i / eta_t).powi(2),
     }
 }
 
@@ -146,17 +159,21 @@ impl FresnelChoice {
         let side = if inside { "from inside" } else { "from outside" };
         let mut contrasts = vec![];
         // A rare part is known from its complement.
-        for (what, value, opl) in [
-            ("reflected", e.reflected, e.reflected_opl),
-            ("refracted", e.transmitted, e.transmitted_opl),
+        for (what, value, opl, eta_squared) in [
+            ("reflected", e.reflected, e.reflected_opl, 1.0),
+            ("refracted", e.transmitted, e.transmitted_opl, e.eta_squared),
         ] {
             if value > 0.15 * REFLECTED {
-                contrasts.push((around(format!("{what} at {angle} degrees {side}"), opl), value));
+                let mut contrast = around(format!("{what} at {angle} degrees {side}"), opl);
+                if context.sabotage == Some(Sabotage::EtaSquared) {
+                    contrast.weights.iter_mut().for_each(|weight| *weight /= eta_squared);
+                }
+                contrasts.push((contrast, value));
             }
         }
         let plan = BatchPlan { batches: 64, passes: context.effort.pick(1, 4), seed: context.seed };
         let mut values = Vec::new();
-        batches(&scene, &self.estimator(), layout(&scene.film, 0.0)?, &plan, |cube: &Cube| {
+        batches(&scene, &self.estimator(), context.layout(&scene.film)?, &plan, |cube: &Cube| {
             values.push(contrasts.iter().map(|(c, _)| c.value(cube)).collect());
         })?;
         let linear: Vec<LinearContrast> = contrasts.iter().map(|(c, _)| c.clone()).collect();
@@ -178,6 +195,11 @@ impl Experiment for FresnelChoice {
         "reflection and refraction at one interface, told apart by time, against Fresnel".into()
     }
 
+    fn twins(&self, effort: Effort) -> Vec<Sabotage> {
+        let tried = effort == Effort::Full || *self == Self::Path;
+        if tried { vec![Sabotage::EtaSquared] } else { vec![] }
+    }
+
     fn run(&self, context: &Context) -> Result<Outcome> {
         let (mut targets, mut values) = (Vec::new(), vec![Vec::new(); 64]);
         for (angle, inside) in CASES {
@@ -191,7 +213,7 @@ impl Experiment for FresnelChoice {
         for row in values {
             batches.push(row);
         }
-        Ok(judge(&targets, &batches, &Criterion::UNBIASED).into())
+        Ok(judge(&targets, &batches, &context.unbiased()).into())
     }
 }
 

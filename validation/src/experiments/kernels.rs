@@ -11,6 +11,7 @@
 //! Both are also compared with the reference on the same cases and on random pairs.
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use glam::DVec3;
 use tpb_beams::Temporal;
@@ -25,8 +26,9 @@ use tpb_reference::beams::beam_ray::{BeamRay1d, BeamRay2dBin, beam_ray_1d, beam_
 use tpb_scene::MediumId;
 
 use crate::error::Result;
-use crate::experiment::{Context, Experiment, Outcome};
+use crate::experiment::{Context, Experiment, Kind, Outcome};
 use crate::experiments::marching::{bisect, covered_parts, gauss};
+use crate::registry::Experiments;
 
 /// Largest relative error of an energy.
 const TOLERANCE: f64 = 1e-9;
@@ -44,6 +46,11 @@ pub enum KernelPairs {
     OneD,
     /// The 2D kernel.
     TwoD,
+}
+
+/// Each kernel.
+pub fn all() -> Experiments {
+    vec![Arc::new(KernelPairs::OneD), Arc::new(KernelPairs::TwoD)]
 }
 
 /// A beam, a ray and a medium.
@@ -325,6 +332,10 @@ impl Experiment for KernelPairs {
 
     fn description(&self) -> String {
         "one beam and one ray against brute-force marching and the reference".into()
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Exact
     }
 
     fn run(&self, context: &Context) -> Result<Outcome> {

@@ -10,6 +10,8 @@
 //!   whose difference from the true radiance, several percent with the radius chosen here, is part
 //!   of the expectation. A beam estimate without blur would fail.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 use tpb_beams::{BeamOptions, KernelChoice};
@@ -24,10 +26,11 @@ use crate::comparison::Comparison;
 use crate::contrasts::standard;
 use crate::cube::Cube;
 use crate::error::Result;
-use crate::experiment::{Context, Experiment, Outcome, Sabotage};
-use crate::measure::{BatchPlan, Estimator, layout};
+use crate::experiment::{Context, Effort, Experiment, Outcome};
+use crate::measure::{BatchPlan, Estimator};
+use crate::registry::Experiments;
+use crate::sabotage::Sabotage;
 use crate::scenes::{Fog, View, infinite_fog, only_depth};
-use crate::statistics::Criterion;
 
 const TIME: TimeSpec = TimeSpec { start_opl: 0.1, bin_width_opl: 0.15, bins: 42 };
 const LIGHT_DISTANCE: f64 = 0.6;
@@ -55,23 +58,21 @@ pub struct SingleScatter {
     pub who: Who,
     /// Mean cosine of the phase function.
     pub g: f64,
-    /// A deliberate defect.
-    pub sabotage: Option<Sabotage>,
+}
+
+/// Each estimator, with isotropic and with anisotropic scattering where the reference has it.
+pub fn all(_: Effort) -> Experiments {
+    let case = |who, g| Arc::new(SingleScatter { who, g }) as _;
+    vec![
+        case(Who::Path, 0.0),
+        case(Who::Path, 0.6),
+        case(Who::Beams1d, 0.0),
+        case(Who::Beams1d, 0.6),
+        case(Who::Beams2d, 0.0),
+    ]
 }
 
 impl SingleScatter {
-    /// The sound experiment.
-    pub fn new(who: Who, g: f64) -> Self {
-        Self { who, g, sabotage: None }
-    }
-
-    /// With a defect.
-    #[must_use]
-    pub fn with(mut self, sabotage: Sabotage) -> Self {
-        self.sabotage = Some(sabotage);
-        self
-    }
-
     /// The exact energy of a bin, for a ray at the angle `alpha` to the direction to the light.
     fn bin(&self, alpha: f64, t0: f64, t1: f64) -> std::result::Result<f64, ReferenceError> {
         let (energy, sigma_s, sigma_t, g, speed) = (1.0, SIGMA_S, SIGMA_S + SIGMA_A, self.g, 1.0);
@@ -187,30 +188,39 @@ impl Experiment for SingleScatter {
         format!("camera inside infinite fog, g = {}, per bin, against the exact {target}", self.g)
     }
 
+    fn twins(&self, effort: Effort) -> Vec<Sabotage> {
+        match (effort, self.who, self.g) {
+            (Effort::Quick, Who::Path, 0.0) => vec![Sabotage::SIGMA_S],
+            (Effort::Quick, Who::Beams1d, 0.0) => vec![Sabotage::KERNEL],
+            (Effort::Quick, ..) => vec![],
+            (Effort::Full, Who::Path, 0.0) => {
+                vec![Sabotage::SIGMA_S, Sabotage::TRANSMITTANCE, Sabotage::PhaseNormalisation]
+            }
+            (Effort::Full, Who::Path, _) => vec![Sabotage::SIGMA_S],
+            (Effort::Full, ..) => vec![Sabotage::KERNEL],
+        }
+    }
+
     fn run(&self, context: &Context) -> Result<Outcome> {
         let view = View { pixels: SIDE, fov: FOV, time: Some(TIME), integrator: only_depth(2) };
-        let sigma_s = SIGMA_S * Sabotage::sigma_s_factor(self.sabotage);
-        let fog = Fog { sigma_s, sigma_a: SIGMA_A, g: self.g };
-        let scene = infinite_fog(&view, &fog, LIGHT_DISTANCE * DVec3::X)?;
+        let fog = Fog { sigma_s: SIGMA_S, sigma_a: SIGMA_A, g: self.g };
+        let scene = infinite_fog(context, &view, &fog, LIGHT_DISTANCE * DVec3::X)?;
         let (expected, coarser) = (self.expected(&GAUSS_4)?, self.expected(&GAUSS_3)?);
         let contrasts = standard(&expected, &strips(), context.effort.pick(5, 10));
         let passes = context.effort.pick(1, 4) * if self.who == Who::Path { 2 } else { 8 };
         let plan = BatchPlan { batches: 64, passes, seed: context.seed };
-        let shift = Sabotage::shift_bins(self.sabotage) * TIME.bin_width_opl;
-        let criterion =
-            if self.who == Who::Path { Criterion::UNBIASED } else { Criterion::BLURRED };
+        let criterion = if self.who == Who::Path { context.unbiased() } else { context.blurred() };
         Comparison {
             scene: &scene,
             estimator: self.estimator(),
-            layout: layout(&scene.film, shift)?,
             plan,
-            factor: Sabotage::estimate_factor(self.sabotage),
             expected: &expected,
             coarser: Some(&coarser),
             contrasts: &contrasts,
             criterion,
+            dropped: &[],
         }
-        .run()
+        .run(context)
     }
 }
 
@@ -255,7 +265,7 @@ mod tests {
     /// more light arrives early.
     #[test]
     fn the_left_of_the_image_is_brighter() {
-        let expected = SingleScatter::new(Who::Path, 0.0).expected(&GAUSS_3).unwrap();
+        let expected = SingleScatter { who: Who::Path, g: 0.0 }.expected(&GAUSS_3).unwrap();
         let energy = |pixel: usize| expected.pixel_bins(pixel).iter().sum::<f64>();
         assert!(energy(3 * SIDE) > energy(3 * SIDE + SIDE - 1));
         assert!((energy(3 * SIDE) / energy(4 * SIDE) - 1.0).abs() < 1e-12, "up and down alike");

@@ -5,6 +5,8 @@
 //! every pixel. Depth k + 1 isolates it. Order 1 is an instant, the others are spread over
 //! 2 … 2k radii; the total has no variance at all, so that it is compared to rounding.
 
+use std::sync::Arc;
+
 use tpb_path::PathOptions;
 use tpb_reference::diffuse_sphere::{Order, SphereCentreBin, sphere_centre_radiance_bins};
 use tpb_scene::TimeSpec;
@@ -13,10 +15,11 @@ use crate::comparison::Comparison;
 use crate::contrasts::standard;
 use crate::cube::Cube;
 use crate::error::Result;
-use crate::experiment::{Context, Experiment, Outcome, Sabotage};
-use crate::measure::{BatchPlan, Estimator, layout};
+use crate::experiment::{Context, Effort, Experiment, Outcome};
+use crate::measure::{BatchPlan, Estimator};
+use crate::registry::Experiments;
+use crate::sabotage::Sabotage;
 use crate::scenes::{View, diffuse_sphere, only_depth};
-use crate::statistics::Criterion;
 
 const ALBEDO: f64 = 0.7;
 
@@ -28,17 +31,15 @@ const TIME: TimeSpec = TimeSpec { start_opl: 1.95, bin_width_opl: 0.1, bins: 90 
 pub struct SphereOrder {
     /// Number of reflections.
     pub order: u32,
-    /// A deliberate defect.
-    pub sabotage: Option<Sabotage>,
+}
+
+/// The first orders.
+pub fn all(effort: Effort) -> Experiments {
+    (1..=effort.pick(4, 8)).map(|order| Arc::new(SphereOrder { order }) as _).collect()
 }
 
 impl SphereOrder {
-    /// The sound experiment.
-    pub fn new(order: u32) -> Self {
-        Self { order, sabotage: None }
-    }
-
-    fn expected(&self, side: usize) -> Result<Cube> {
+    fn expected(self, side: usize) -> Result<Cube> {
         let bin = |i: usize| {
             let edge = |i: usize| TIME.start_opl + i as f64 * TIME.bin_width_opl;
             let order = Order::Exactly(self.order);
@@ -63,10 +64,20 @@ impl Experiment for SphereOrder {
         format!("{} diffuse reflections in a sphere, per bin, against the exact law", self.order)
     }
 
+    fn twins(&self, effort: Effort) -> Vec<Sabotage> {
+        match (effort, self.order) {
+            // Half a bin would put the instant of the first order on an edge.
+            (Effort::Full, 1) => vec![Sabotage::Late(0.75)],
+            (Effort::Full, _) | (Effort::Quick, 3) => vec![Sabotage::LATE],
+            (Effort::Quick, _) => vec![],
+        }
+    }
+
     fn run(&self, context: &Context) -> Result<Outcome> {
         let side = 16;
         let integrator = only_depth(self.order + 1);
         let scene = diffuse_sphere(
+            context,
             &View { pixels: side, fov: 70.0, time: Some(TIME), integrator },
             ALBEDO,
         )?;
@@ -86,18 +97,16 @@ impl Experiment for SphereOrder {
             passes: if self.order == 1 { 1 } else { context.effort.pick(1, 4) },
             seed: context.seed,
         };
-        let shift = Sabotage::shift_bins(self.sabotage) * TIME.bin_width_opl;
         Comparison {
             scene: &scene,
             estimator,
-            layout: layout(&scene.film, shift)?,
             plan,
-            factor: 1.0,
             expected: &expected,
             coarser: None,
             contrasts: &contrasts,
-            criterion: Criterion::UNBIASED,
+            criterion: context.unbiased(),
+            dropped: &[],
         }
-        .run()
+        .run(context)
     }
 }

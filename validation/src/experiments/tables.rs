@@ -3,13 +3,21 @@
 //! The tables were computed elsewhere in higher precision; a solution that misses its table cannot
 //! judge anything. No chance is involved.
 
+use std::sync::Arc;
+
 use tpb_reference::tables::{TableReport, Verdict, evaluate_directory};
 
 use crate::error::Result;
-use crate::experiment::{Context, Experiment, Outcome};
+use crate::experiment::{Context, Experiment, Kind, Outcome};
+use crate::registry::Experiments;
 
 /// All tables.
 pub struct Tables;
+
+/// The one experiment.
+pub fn all() -> Experiments {
+    vec![Arc::new(Tables)]
+}
 
 impl Experiment for Tables {
     fn name(&self) -> String {
@@ -18,6 +26,10 @@ impl Experiment for Tables {
 
     fn description(&self) -> String {
         "analytic solutions against every row of every table".into()
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Exact
     }
 
     fn run(&self, context: &Context) -> Result<Outcome> {

@@ -45,13 +45,6 @@ pub struct Criterion {
     pub level: f64,
 }
 
-impl Criterion {
-    /// Estimators without bias: a margin of 0.5 %.
-    pub const UNBIASED: Self = Self { margin: 0.005, confidence: 0.99, level: 1e-8 };
-    /// Blurred estimates against their exact expected blur: a margin of 1 %.
-    pub const BLURRED: Self = Self { margin: 0.01, confidence: 0.99, level: 1e-8 };
-}
-
 /// What was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -6,6 +6,7 @@ use tpb_optics::medium::{choose_channel, sample_exponential};
 use tpb_optics::warp::Equiangular;
 use tpb_optics::{Spectrum, Stream};
 
+use super::Draws;
 use super::histogram::{Grid, Tested, test};
 
 /// t to x, and the density of t to that of x.
@@ -18,7 +19,7 @@ fn of_bounded(x: f64, density: impl Fn(f64) -> f64) -> f64 {
     density(x / rest) / (rest * rest)
 }
 
-pub(super) fn tests(samples: u64, seed: u64) -> Vec<Tested> {
+pub(super) fn tests(samples: u64, seed: Draws) -> Vec<Tested> {
     let mut tests = Vec::new();
     for sigma in [0.3, 1.0, 12.0] {
         tests.push(test(
@@ -40,9 +41,9 @@ pub(super) fn tests(samples: u64, seed: u64) -> Vec<Tested> {
 }
 
 /// The choice of a channel, and a free flight of the mixture.
-fn channels(samples: u64, seed: u64) -> Vec<Tested> {
+fn channels(samples: u64, seed: Draws) -> Vec<Tested> {
     let (weights, sigma) = (Spectrum([0.2, 1.0, 0.05]), Spectrum([4.0, 0.5, 1.5]));
-    let mut rng = Stream::new(seed, 0, 77);
+    let mut rng = Stream::new(seed.seed, 0, 77);
     let mut counts = [0_u64; 3];
     for _ in 0..samples {
         counts[choose_channel(weights, &mut rng)] += 1;
@@ -63,7 +64,7 @@ fn channels(samples: u64, seed: u64) -> Vec<Tested> {
 }
 
 /// Lights beside, before and behind the part of the ray, near and far; the density as stated.
-fn equiangular(samples: u64, seed: u64) -> Vec<Tested> {
+fn equiangular(samples: u64, seed: Draws) -> Vec<Tested> {
     let cases = [
         (0.0, 4.0, DVec3::new(0.3, 0.0, 2.0)),
         (1.0, 4.0, DVec3::new(0.0, 0.05, 2.5)),

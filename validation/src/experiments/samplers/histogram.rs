@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 use rayon::prelude::*;
 use tpb_optics::Stream;
 
+use super::Draws;
 use crate::statistics::chi_square;
 
 /// Samples are drawn in so many independent streams.
@@ -61,6 +62,14 @@ impl Grid {
         Some(x * self.cells[1] + index(point[1], self.y, self.cells[1])?)
     }
 
+    /// The point with its share of the first range raised to a power.
+    fn warped(&self, [x, y]: [f64; 2], exponent: f64) -> [f64; 2] {
+        let [low, high] = self.x;
+        let share = (x - low) / (high - low);
+        // Without a power nothing is touched, not even by rounding.
+        if exponent == 1.0 { [x, y] } else { [low + (high - low) * share.powf(exponent), y] }
+    }
+
     fn corners(&self, cell: usize) -> [[f64; 2]; 2] {
         let edge = |i: usize, [low, high]: [f64; 2], cells: usize| {
             low + (high - low) * i as f64 / cells as f64
@@ -104,7 +113,7 @@ pub(super) fn test(
     name: impl Into<String>,
     grid: Grid,
     samples: u64,
-    seed: u64,
+    seed: Draws,
     sample: impl Fn(&mut Stream) -> [f64; 2] + Sync,
     density: impl Fn(f64, f64) -> f64 + Sync,
 ) -> Tested {
@@ -117,11 +126,12 @@ pub(super) fn test(
     let counts = (0..STREAMS)
         .into_par_iter()
         .map(|stream| {
-            let mut rng = Stream::new(seed, stream, item);
+            let mut rng = Stream::new(seed.seed, stream, item);
             // One cell more for what falls outside.
             let mut counts = vec![0_u64; cells + 1];
             for _ in 0..samples / STREAMS {
-                counts[grid.cell(sample(&mut rng)).unwrap_or(cells)] += 1;
+                let point = grid.warped(sample(&mut rng), seed.exponent);
+                counts[grid.cell(point).unwrap_or(cells)] += 1;
             }
             counts
         })
@@ -176,6 +186,8 @@ fn rule(f: &impl Fn(f64, f64) -> f64, x: [f64; 2], y: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
 
+    const SOUND: Draws = Draws { seed: 1, exponent: 1.0 };
+
     #[test]
     fn a_right_sampler_passes_and_one_two_percent_off_does_not() {
         let sampler = |power: f64| {
@@ -183,7 +195,7 @@ mod tests {
                 "ramp",
                 Grid::UNIT,
                 2_000_000,
-                1,
+                SOUND,
                 |rng| [rng.uniform().powf(power), 0.5],
                 |x, _| 2.0 * x,
             )
@@ -194,10 +206,16 @@ mod tests {
 
     #[test]
     fn samples_outside_and_densities_that_are_not_normalised_fail() {
-        let outside =
-            test("outside", Grid::UNIT, 6400, 1, |rng| [1.001 * rng.uniform(), 0.5], |_, _| 1.0);
+        let outside = test(
+            "outside",
+            Grid::UNIT,
+            6400,
+            SOUND,
+            |rng| [1.001 * rng.uniform(), 0.5],
+            |_, _| 1.0,
+        );
         assert_eq!(outside.p, 0.0);
-        let short = test("short", Grid::UNIT, 6400, 1, |rng| [rng.uniform(), 0.5], |_, _| 0.99);
+        let short = test("short", Grid::UNIT, 6400, SOUND, |rng| [rng.uniform(), 0.5], |_, _| 0.99);
         assert_eq!(short.p, 0.0);
     }
 

@@ -10,14 +10,23 @@ mod phase;
 mod surfaces;
 mod warps;
 
+use std::sync::Arc;
+
 use crate::error::Result;
-use crate::experiment::{Context, Experiment, Outcome, Verdict};
+use crate::experiment::{Context, Effort, Experiment, Outcome, Verdict};
+use crate::registry::Experiments;
+use crate::sabotage::Sabotage;
 use crate::statistics::{Finding, holm};
 
 pub use histogram::Tested;
 
-/// Level of a group of samplers.
-const LEVEL: f64 = 1e-8;
+/// Random numbers of a group of tests, and a twin's additional power in every warp (1 in sound
+/// programs).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Draws {
+    seed: u64,
+    exponent: f64,
+}
 
 /// A group of samplers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,12 +43,17 @@ pub enum Samplers {
     Emission,
 }
 
+/// Each group.
+pub fn all() -> Experiments {
+    Samplers::ALL.map(|group| Arc::new(group) as _).into()
+}
+
 impl Samplers {
     /// All groups.
     pub const ALL: [Self; 5] =
         [Self::Phase, Self::Warps, Self::Distances, Self::Surfaces, Self::Emission];
 
-    fn tests(self, samples: u64, seed: u64) -> Result<Vec<Tested>> {
+    fn tests(self, samples: u64, seed: Draws) -> Result<Vec<Tested>> {
         Ok(match self {
             Self::Phase => phase::tests(samples, seed),
             Self::Warps => warps::tests(samples, seed),
@@ -76,23 +90,29 @@ impl Experiment for Samplers {
         format!("{what}: chi-square against the density")
     }
 
+    fn twins(&self, effort: Effort) -> Vec<Sabotage> {
+        let tried = effort == Effort::Full || *self == Self::Distances;
+        if tried { vec![Sabotage::WARP] } else { vec![] }
+    }
+
     fn run(&self, context: &Context) -> Result<Outcome> {
         let samples = context.effort.pick(1_000_000, 20_000_000);
-        let tests = self.tests(samples, context.seed)?;
+        let exponent = if let Some(Sabotage::Warp(power)) = context.sabotage { power } else { 1.0 };
+        let tests = self.tests(samples, Draws { seed: context.seed, exponent })?;
         let p: Vec<f64> = tests.iter().map(|test| test.p).collect();
         let adjusted = holm(&p);
         let worst_p = adjusted.iter().copied().fold(1.0, f64::min);
-        let failed = tests.iter().zip(&adjusted).filter(|(_, p)| **p <= LEVEL);
+        let failed = tests.iter().zip(&adjusted).filter(|(_, p)| **p <= context.level);
         let mut notes = vec![format!("{} tests of {samples} samples", tests.len())];
         notes.extend(
             failed.map(|(test, _)| format!("{}: {} (p = {:.1e})", test.name, test.detail, test.p)),
         );
-        let mut outcome = Outcome::exact(worst_p > LEVEL, notes);
+        let mut outcome = Outcome::exact(worst_p > context.level, notes);
         debug_assert!(
             (outcome.verdict == Verdict::Passed) == (outcome.finding == Finding::Equivalent)
         );
         outcome.worst_p = Some(worst_p);
-        outcome.false_alarm = LEVEL;
+        outcome.false_alarm = context.level;
         Ok(outcome)
     }
 }

@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use tpb_optics::Phase;
 
+use super::Draws;
 use super::histogram::{Grid, Tested, test};
 use super::{axes, polar, world};
 
@@ -17,7 +18,7 @@ fn henyey_greenstein(g: f64, cosine: f64) -> f64 {
     (1.0 - g * g) / (4.0 * PI * bracket.powf(1.5))
 }
 
-pub(super) fn tests(samples: u64, seed: u64) -> Vec<Tested> {
+pub(super) fn tests(samples: u64, seed: Draws) -> Vec<Tested> {
     let mut tests = Vec::new();
     for g in MEAN_COSINES {
         let phase = Phase::with_mean_cosine(g);

@@ -11,6 +11,7 @@ use tpb_optics::Stream;
 use tpb_scene::Primitive;
 use tpb_scene::geometry::{Cylinder, Outline, Planar, Sphere};
 
+use super::Draws;
 use super::histogram::{Grid, Tested, test};
 use super::{axes, polar};
 
@@ -26,7 +27,7 @@ pub(super) struct Case {
     gap: Box<dyn Fn(DVec3) -> f64 + Sync + Send>,
 }
 
-pub(super) fn tests(samples: u64, seed: u64) -> Vec<Tested> {
+pub(super) fn tests(samples: u64, seed: Draws) -> Vec<Tested> {
     let mut tests = Vec::new();
     for case in cases() {
         let Case { name, primitive, grid, natural, density, area, gap } = case;
@@ -35,7 +36,7 @@ pub(super) fn tests(samples: u64, seed: u64) -> Vec<Tested> {
             primitive.sample(u1, u2)
         };
         tests.push(test(name, grid, samples, seed, |rng| natural(draw(rng).position), density));
-        let mut rng = Stream::new(seed, 1, 0);
+        let mut rng = Stream::new(seed.seed, 1, 0);
         let sound = (0..10_000).all(|_| {
             let p = draw(&mut rng);
             gap(p.position).abs() < 1e-12

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use tpb_optics::{Stream, warp};
 
+use super::Draws;
 use super::histogram::{Grid, Tested, test};
 use super::polar;
 
@@ -14,7 +15,7 @@ fn pair(rng: &mut Stream) -> (f64, f64) {
     (rng.uniform(), rng.uniform())
 }
 
-pub(super) fn tests(samples: u64, seed: u64) -> Vec<Tested> {
+pub(super) fn tests(samples: u64, seed: Draws) -> Vec<Tested> {
     let direction = |name: &str,
                      grid,
                      warp: &(dyn Fn(f64, f64) -> DVec3 + Sync),
