@@ -247,7 +247,7 @@ struct Errors {
 impl Errors {
     fn new(cubes: &[Cube], reference: &ReferenceCube) -> Self {
         let n = cubes.len();
-        let empty = Gram::of(&vec![Vec::new(); n]);
+        let empty = Gram::of(&vec![Vec::<f64>::new(); n]);
         let (mut judged, mut whole) = (empty.clone(), empty);
         let (mut sum, mut squares) = (0.0, 0.0);
         for pixel in 0..reference.cube.pixels() {

@@ -8,6 +8,7 @@
 //!   that are judged, batch by batch.
 //! * [`equal_time`], [`reference_cube`]: methods against each other at equal time, and the long
 //!   render that both are compared with.
+//! * [`run_time`]: how the error of a method falls with the time it is given.
 //! * [`suite`], [`report`]: running many, and what is printed and written.
 
 pub mod comparison;
@@ -21,6 +22,7 @@ pub mod measure;
 pub mod reference_cube;
 pub mod registry;
 pub mod report;
+pub mod run_time;
 pub mod sabotage;
 pub mod scenes;
 pub mod statistics;

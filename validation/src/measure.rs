@@ -22,6 +22,18 @@ pub enum Estimator {
 }
 
 impl Estimator {
+    /// Names of all methods.
+    pub const NAMES: [&'static str; 2] = ["path", "beams"];
+
+    /// The method of a name with its default options.
+    pub fn of_name(name: &str) -> Option<Self> {
+        match name {
+            "path" => Some(Self::Path(PathOptions::default())),
+            "beams" => Some(Self::Beams(BeamOptions::default())),
+            _ => None,
+        }
+    }
+
     /// Its name on the command line.
     pub fn name(&self) -> &'static str {
         match self {

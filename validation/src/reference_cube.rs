@@ -30,6 +30,7 @@ use tpb_scene::{IntegratorSpec, Plan, Transport};
 
 use crate::cube::{Cube, dilate};
 use crate::error::{Result, ValidationError};
+use crate::experiment::Context;
 use crate::measure::{Estimator, layout, render};
 use crate::statistics::ReferenceNoise;
 
@@ -84,6 +85,29 @@ impl ReferenceCube {
             Transport::Mono => make::<1>(scene, time, seed, commit),
             Transport::Rgb => make::<3>(scene, time, seed, commit),
         }
+    }
+
+    /// The reference of a shipped scene: the one that ships with it, else the one that an earlier
+    /// run left in the context's output folder, else a new one, rendered for `time` and left there;
+    /// a new one comes with a note that says so.
+    pub fn of_shipped(
+        loaded: &LoadedScene,
+        name: &str,
+        context: &Context,
+        time: Duration,
+    ) -> Result<(Self, Option<String>)> {
+        let made = context.out.join("references").join(format!("{name}.npz"));
+        for path in [&context.reference_path(name), &made] {
+            if path.exists() {
+                let reference = Self::read(path)?;
+                reference.check(loaded)?;
+                return Ok((reference, None));
+            }
+        }
+        let reference = Self::make(loaded, time, context.seed ^ 0x5eed, "made for this run")?;
+        reference.write(&made)?;
+        let note = format!("no reference was shipped: rendered one for {} s", time.as_secs());
+        Ok((reference, Some(note)))
     }
 
     /// What the reference adds to errors over the pixels that `include` names.

@@ -1,5 +1,6 @@
 //! Project tasks: parse, call, print. `cargo xtask` alone lists them.
 
+mod error_time;
 mod gate;
 mod schema;
 mod tables;
@@ -31,6 +32,8 @@ enum Task {
         /// Folder of tables [default: validation/tables]
         dir: Option<PathBuf>,
     },
+    /// Measures the error of each method against run time: tables, JSON, charts.
+    ErrorTime(error_time::ErrorTimeArgs),
     /// Renders the long reference cube of an equal-time comparison.
     ReferenceRender(validate::ReferenceRenderArgs),
     /// Checks scene.schema.json against the code, or writes it.
@@ -48,6 +51,7 @@ fn main() -> ExitCode {
         Task::Validate(args) => validate::run(&args),
         Task::Test => gate::run(),
         Task::Tables { dir } => tables::run(dir),
+        Task::ErrorTime(args) => error_time::run(&args),
         Task::ReferenceRender(args) => validate::reference_render(&args),
         Task::Schema { write } => schema::run(write),
         Task::Tidy => tidy::run(),

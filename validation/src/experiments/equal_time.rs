@@ -53,28 +53,10 @@ pub fn all(effort: Effort) -> Experiments {
 }
 
 impl EqualTimeRun {
-    fn reference(&self, context: &Context) -> Result<(ReferenceCube, Option<String>)> {
-        let loaded = shipped(&context.scene_path(self.scene))?;
-        let kept = context.reference_path(self.scene);
-        let made = context.out.join("references").join(format!("{}.npz", self.scene));
-        for path in [&kept, &made] {
-            if path.exists() {
-                let reference = ReferenceCube::read(path)?;
-                reference.check(&loaded)?;
-                return Ok((reference, None));
-            }
-        }
-        let time = Duration::from_secs(context.effort.pick(60, 240));
-        let reference =
-            ReferenceCube::make(&loaded, time, context.seed ^ 0x5eed, "made for this run")?;
-        reference.write(&made)?;
-        let note = format!("no reference was shipped: rendered one for {} s", time.as_secs());
-        Ok((reference, Some(note)))
-    }
-
     fn compare(&self, context: &Context) -> Result<(EqualTime, Option<String>)> {
         let loaded = shipped(&context.scene_path(self.scene))?;
-        let (reference, note) = self.reference(context)?;
+        let time = Duration::from_secs(context.effort.pick(60, 240));
+        let (reference, note) = ReferenceCube::of_shipped(&loaded, self.scene, context, time)?;
         let plan = EqualTimePlan {
             name: self.scene.into(),
             scene: &loaded.scene,

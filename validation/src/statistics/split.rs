@@ -77,11 +77,11 @@ pub struct Split {
 
 impl Gram {
     /// From residual vectors of equal length.
-    pub fn of(residuals: &[Vec<f64>]) -> Self {
+    pub fn of<T: Copy + Into<f64>>(residuals: &[Vec<T>]) -> Self {
         let mut products = Vec::with_capacity(residuals.len() * residuals.len());
         for a in residuals {
             for b in residuals {
-                products.push(a.iter().zip(b).map(|(x, y)| x * y).sum());
+                products.push(a.iter().zip(b).map(|(&x, &y)| x.into() * y.into()).sum());
             }
         }
         Self { n: residuals.len(), products }
@@ -117,17 +117,21 @@ impl Gram {
         [own / m, cross / (m * (m - 1.0))]
     }
 
+    /// Squared residuals of one replicate, split: [error, variance, squared bias], the reference's
+    /// variance subtracted; of all replicates, or of all but one. Needs two replicates at least.
+    pub fn parts(&self, reference: &ReferenceNoise, without: Option<usize>) -> [f64; 3] {
+        let [own, cross] = self.means(without);
+        [own - reference.variance, own - cross, cross - reference.variance]
+    }
+
     /// The parts of the NMSE; `None` under three replicates or without a signal.
     pub fn split(&self, reference: &ReferenceNoise, confidence: f64) -> Option<Split> {
         let signal = reference.signal();
         if self.n < 3 || signal.is_nan() || signal <= 0.0 {
             return None;
         }
-        let parts = |[own, cross]: [f64; 2]| {
-            [own - reference.variance, own - cross, cross - reference.variance]
-        };
-        let whole = parts(self.means(None));
-        let left_out: Vec<[f64; 3]> = (0..self.n).map(|i| parts(self.means(Some(i)))).collect();
+        let whole = self.parts(reference, None);
+        let left_out: Vec<[f64; 3]> = (0..self.n).map(|i| self.parts(reference, Some(i))).collect();
         let n = self.n as f64;
         let jackknife = |part: usize| {
             let mean = left_out.iter().map(|p| p[part]).sum::<f64>() / n;
