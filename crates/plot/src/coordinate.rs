@@ -88,10 +88,10 @@ fn multiples((start, end): (f64, f64), most: u8) -> Vec<f64> {
     (0..=(last - first) as usize).map(|index| (first + index as f64) * step).collect()
 }
 
-/// The powers of ten in a range, at most so many; if there are fewer than two, their multiples too.
+/// The powers of ten in a range, at most so many; where they are few, twice and five times them too.
 fn decades((start, end): (f64, f64), most: u8) -> Vec<f64> {
     let (first, last) = (start.log10().ceil() as i32, end.log10().floor() as i32);
-    if last <= first {
+    if last - first < 2 {
         let inside = |value: &f64| (start..=end).contains(value);
         let fine = |power: i32| [1.0, 2.0, 5.0].map(|factor| factor * 10.0_f64.powi(power));
         return (first - 1..=last).flat_map(fine).filter(inside).take(usize::from(most)).collect();
@@ -110,6 +110,7 @@ mod tests {
         assert_eq!(multiples((-0.3, 0.4), 9).len(), 8);
         assert_eq!(decades((3e-4, 2e3), 9).len(), 7);
         assert_eq!(decades((1.5, 8.0), 9), [2.0, 5.0]);
+        assert_eq!(decades((0.15, 11.0), 9), [0.2, 0.5, 1.0, 2.0, 5.0, 10.0]);
     }
 
     #[test]
