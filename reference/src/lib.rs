@@ -31,7 +31,7 @@ pub mod diffuse_sphere;
 mod diffusion;
 mod dwell;
 pub mod error;
-mod infinite_medium;
+pub mod infinite_medium;
 mod interfaces;
 pub mod numerics;
 pub mod phase;

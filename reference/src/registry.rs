@@ -99,7 +99,6 @@ impl Solution {
     }
 
     /// Marked as an approximation that holds as `validity` says.
-    #[expect(dead_code, reason = "the first approximations come with diffusion")]
     pub(crate) const fn approximate(mut self, validity: &'static str) -> Self {
         self.approximate = Some(validity);
         self

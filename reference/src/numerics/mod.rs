@@ -2,5 +2,6 @@
 
 pub(crate) mod bernstein;
 pub(crate) mod path_integral;
+pub(crate) mod poisson;
 pub mod quadrature;
 pub(crate) mod vector;
