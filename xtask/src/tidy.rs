@@ -22,6 +22,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("tpb-scene", 1),
     ("tpb-film", 1),
     ("tpb-render", 2),
+    ("tpb-transport", 2),
     ("tpb-path", 3),
     ("tpb-beams", 3),
     ("tpb-reference", 3),

@@ -21,16 +21,15 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use tpb_film::{Arrival, Strip};
+use tpb_film::{Arrival, Ledger, Strip};
 use tpb_optics::{Rgb, Spectrum, Stream, fresnel};
 use tpb_scene::{Bsdf, Dielectric, Flight, Hit, IntegratorSpec, Plan, Reflector, Scene, Vertex};
+use tpb_transport::{Crossing, roulette};
 
 use crate::Settings;
 use crate::beam::{Beam, CameraRay};
 use crate::beam_map::{BeamMap, Pairs};
 use crate::kernel::RayBeamKernel;
-use crate::photon::LARGEST_SURVIVAL;
-use crate::specular::Crossing;
 use crate::surface_map::SurfaceMap;
 use crate::tiles::Tiles;
 
@@ -266,9 +265,8 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
         if path.events < self.integrator.rr_depth {
             return true;
         }
-        let survival = path.throughput.max_channel().min(LARGEST_SURVIVAL);
-        path.throughput = path.throughput / survival;
-        rng.uniform() < survival
+        // The ledger of this method is the photons'.
+        roulette(&mut path.throughput, 1.0, rng, &mut Ledger::default())
     }
 }
 

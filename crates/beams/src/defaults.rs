@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 
 use tpb_optics::{Stream, fresnel};
 use tpb_scene::{Bsdf, Flight, Hit, Medium, Reflector, Scene, Vertex};
+use tpb_transport::Crossing;
 
-use crate::specular::Crossing;
 use crate::stream_item;
 
 /// Rays along an edge of the film.

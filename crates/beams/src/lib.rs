@@ -41,11 +41,8 @@ pub mod kernel;
 pub mod kernel1d;
 pub mod kernel2d;
 mod method;
-mod mixture;
 mod options;
-mod photon;
 pub mod photons;
-mod specular;
 pub mod surface_map;
 pub mod tiles;
 
@@ -54,11 +51,6 @@ pub use options::{BeamLength, BeamOptions, KernelChoice, OptionError, Settings, 
 
 /// Items of the random streams: photons count from 0, pixels from 2⁶³.
 pub(crate) mod stream_item {
-    /// The stream of a photon.
-    pub(crate) const fn photon(index: u64) -> u64 {
-        index
-    }
-
     /// The stream of a pixel.
     pub(crate) const fn pixel(index: usize) -> u64 {
         (1 << 63) | index as u64

@@ -35,20 +35,21 @@
 //!
 //! **Ledger.** It follows importance: each camera path starts with 1. What a flight, a surface,
 //! roulette or the depth limit takes is the difference of the throughput's luminance, so that it
-//! closes to rounding, path by path, even where colour weights go above 1.
+//! closes to rounding, path by path; jumps of colour weights are booked as roulette.
 //!
 //! **What it cannot do.** Collimated emitters (lasers) are points in position and direction: no
 //! path connects to them or meets them. Point and spot emitters cannot be met through mirrors and
 //! glass, so that their caustics are missing. The plan says both; photon beams render them.
 
-mod free_flight;
 mod light;
 mod options;
+mod path;
 mod surface;
 #[cfg(test)]
 mod tests;
 mod tracer;
 mod walk;
+mod world;
 
 pub use options::PathOptions;
 pub use tracer::PathTracer;

@@ -16,67 +16,21 @@ use tpb_optics::Spectrum;
 use tpb_optics::medium::transmittance;
 use tpb_optics::warp::Equiangular;
 use tpb_scene::{Flight, Hit, LightPoint, Vertex};
+use tpb_transport::FreeFlight;
 
-use crate::free_flight::FreeFlight;
-use crate::walk::{Found, Walk};
-
-/// Which strategies find emitters that a path could connect to. All of them, but in tests.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Strategies {
-    /// Connect vertices to points on lights.
-    pub(crate) next_event: bool,
-    /// Count emitters that a scattered direction meets.
-    pub(crate) hits: bool,
-    /// Draw distances towards lights, on flights seen from the eye.
-    pub(crate) equiangular: bool,
-}
-
-/// A distance on a flight seen from the eye at which the path scattered, for weighing what it
-/// meets next against equiangular sampling.
-#[derive(Clone, Copy)]
-pub(crate) struct SeenFrom {
-    origin: DVec3,
-    direction: DVec3,
-    extent: (f64, f64),
-    distance: f64,
-    density: f64,
-}
-
-impl SeenFrom {
-    /// The scattering at `distance`, chosen by `free`.
-    #[inline]
-    pub(crate) fn new<const C: usize>(
-        flight: &Flight,
-        free: &FreeFlight<'_, C>,
-        distance: f64,
-    ) -> Option<Self> {
-        Some(Self {
-            origin: flight.origin,
-            direction: flight.direction,
-            extent: free.extent()?,
-            distance,
-            density: free.density(distance),
-        })
-    }
-
-    /// e: what equiangular sampling towards `light` would have had for this distance.
-    #[inline]
-    fn equiangular_ratio(&self, light: DVec3) -> f64 {
-        let (start, end) = self.extent;
-        let towards = Equiangular::new(self.origin, self.direction, start, end, light);
-        towards.pdf(self.distance) / self.density
-    }
-}
+use crate::path::{Found, SeenFrom};
+use crate::walk::Walk;
+use crate::world::Strategies;
 
 impl<const C: usize> Walk<'_, '_, C> {
     /// Adds the emission at the end of a flight, whether or not the path gets there.
     #[inline]
     pub(crate) fn see_emission(&mut self, flight: &Flight, free: &FreeFlight<'_, C>) {
         let Some(hit) = &flight.hit else { return };
-        if !self.tracer.integrator.counts(self.path.depth) {
+        if !self.world.integrator.counts(self.path.depth) {
             return;
         }
-        let Some(radiance) = self.tracer.scene.emitted::<C>(hit, flight.direction) else { return };
+        let Some(radiance) = self.world.scene.emitted::<C>(hit, flight.direction) else { return };
         let weight = self.hit_weight(flight, hit);
         let throughput = self.path.radiance_throughput() * free.transmittance();
         let opl = self.path.opl + flight.opl(hit.distance);
@@ -86,13 +40,13 @@ impl<const C: usize> Walk<'_, '_, C> {
     /// Weight of an emitter that the path met.
     #[inline]
     fn hit_weight(&self, flight: &Flight, hit: &Hit) -> f64 {
-        let Strategies { next_event, hits, .. } = self.tracer.strategies;
+        let Strategies { next_event, hits, .. } = self.world.strategies;
         let Found::ByScattering { density, seen } = self.path.found else { return 1.0 };
         if !(next_event && hits) {
             return if hits { 1.0 } else { 0.0 };
         }
         let cos = flight.direction.dot(hit.normal).abs();
-        let chosen = self.tracer.scene.light_pdf(hit) * hit.distance * hit.distance / cos;
+        let chosen = self.world.scene.light_pdf(hit) * hit.distance * hit.distance / cos;
         let e = seen.map_or(0.0, |seen| seen.equiangular_ratio(hit.position));
         density / (density + chosen * (1.0 + e))
     }
@@ -107,11 +61,10 @@ impl<const C: usize> Walk<'_, '_, C> {
         seen: Option<&SeenFrom>,
         scattering: impl Fn(DVec3) -> f64,
     ) {
-        if !self.tracer.strategies.next_event || !self.tracer.integrator.counts(self.path.depth + 1)
-        {
+        if !self.world.strategies.next_event || !self.world.integrator.counts(self.path.depth + 1) {
             return;
         }
-        let Some(light) = self.tracer.scene.sample_light(self.rng) else { return };
+        let Some(light) = self.world.scene.sample_light(self.rng) else { return };
         let throughput = self.path.radiance_throughput();
         self.connect(&light, vertex, opl, throughput, scattering, |h| {
             let e = seen.map_or(0.0, |seen| seen.equiangular_ratio(light.position));
@@ -122,7 +75,7 @@ impl<const C: usize> Walk<'_, '_, C> {
     /// On a flight seen from the eye: a light point first, then the distance towards it.
     pub(crate) fn equiangular(&mut self, flight: &Flight, free: &FreeFlight<'_, C>) {
         let Some((start, end)) = free.extent() else { return };
-        let Some(light) = self.tracer.scene.sample_light(self.rng) else { return };
+        let Some(light) = self.world.scene.sample_light(self.rng) else { return };
         let towards = Equiangular::new(flight.origin, flight.direction, start, end, light.position);
         if !towards.is_proper() {
             return;
@@ -133,7 +86,7 @@ impl<const C: usize> Walk<'_, '_, C> {
         let density = towards.pdf(t);
         let e = density / free.density(t);
         let throughput = self.path.radiance_throughput()
-            * flight.transmittance(self.tracer.scene, t)
+            * flight.transmittance(self.world.scene, t)
             * part.coefficients.sigma_s
             / density;
         let vertex = Vertex { position: flight.at(t), primitive: None, region: part.region };
@@ -155,7 +108,7 @@ impl<const C: usize> Walk<'_, '_, C> {
         scattering: impl Fn(DVec3) -> f64,
         weight: impl Fn(f64) -> f64,
     ) {
-        let scene = self.tracer.scene;
+        let scene = self.world.scene;
         let Some(incident) = scene.incident::<C>(light, vertex.position) else { return };
         let value = scattering(incident.direction);
         let throughput = throughput * incident.flux * (value / light.pdf);
@@ -166,7 +119,7 @@ impl<const C: usize> Walk<'_, '_, C> {
         let Some(flight) = scene.connect(vertex, direction, distance, light.primitive) else {
             return;
         };
-        let h = if self.tracer.strategies.hits { value / incident.pdf_solid_angle } else { 0.0 };
+        let h = if self.world.strategies.hits { value / incident.pdf_solid_angle } else { 0.0 };
         let depth = flight.depth::<C>(scene, distance);
         let energy = throughput * transmittance(depth) * weight(h);
         self.deposit(opl + flight.opl(distance), energy);

@@ -8,16 +8,18 @@ use std::f64::consts::FRAC_1_PI;
 
 use glam::DVec3;
 use tpb_optics::{Frame, Rgb, Spectrum, fresnel, warp};
-use tpb_scene::{Bsdf, Dielectric, Flight, Hit, Reflector, Shape, Vertex};
+use tpb_scene::{Bsdf, Dielectric, Flight, Hit, Reflector, Vertex};
+use tpb_transport::{Crossing, absorb_on_surface};
 
-use crate::walk::{Found, Walk};
+use crate::path::Found;
+use crate::walk::Walk;
 
 impl<const C: usize> Walk<'_, '_, C> {
     /// The path reaches the surface at the end of its flight; afterwards its direction is a new
     /// one, or its weight is zero.
     #[inline]
     pub(crate) fn scatter_at_surface(&mut self, flight: &Flight, hit: &Hit) {
-        let shape = self.tracer.scene.shape(hit.primitive);
+        let shape = self.world.scene.shape(hit.primitive);
         let from_front = flight.direction.dot(hit.normal) < 0.0;
         self.path.opl += flight.opl(hit.distance);
         self.path.vertex = Vertex {
@@ -27,7 +29,7 @@ impl<const C: usize> Walk<'_, '_, C> {
         };
         let normal = if from_front { hit.normal } else { -hit.normal };
         match (shape.bsdf, shape.bsdf.reflector(from_front)) {
-            (Bsdf::Dielectric(glass), _) => self.meet_glass(shape, &glass, from_front, normal),
+            (Bsdf::Dielectric(glass), _) => self.meet_glass(&glass, hit),
             (_, Some(Reflector::Diffuse(reflectance))) => {
                 self.reflect_diffusely(reflectance, normal);
             }
@@ -59,33 +61,19 @@ impl<const C: usize> Walk<'_, '_, C> {
         self.path.found = self.path.found.after_specular();
     }
 
-    /// `normal` is on the side that the path comes from.
-    fn meet_glass(&mut self, shape: &Shape, glass: &Dielectric, from_front: bool, normal: DVec3) {
-        let (eta_i, eta_t) = if from_front {
-            (glass.exterior_eta, glass.interior_eta)
-        } else {
-            (glass.interior_eta, glass.exterior_eta)
-        };
-        let direction = self.path.direction;
-        let cos_incident = (-direction.dot(normal)).min(1.0);
-        let f = fresnel::dielectric(cos_incident, eta_i, eta_t);
-        if f.reflectance >= 1.0 || self.rng.uniform() < f.reflectance {
-            return self.reflect(glass.reflectance, normal);
-        }
-        self.absorb_on_surface(glass.transmittance.channels());
-        let ratio = eta_i / eta_t;
-        let to_front = !from_front;
-        self.path.direction = fresnel::refract(direction, normal, ratio, f.cos_transmitted);
+    fn meet_glass(&mut self, glass: &Dielectric, hit: &Hit) {
+        let crossing = Crossing::choose(glass, self.path.direction, hit.normal, self.rng);
+        self.absorb_on_surface(crossing.factor.channels());
         let before = self.path.vertex.region;
-        self.path.vertex.region = self.tracer.scene.region_beyond(shape, to_front, before);
-        self.path.radiance_factor *= ratio * ratio;
+        self.path.vertex.region = crossing.region(self.world.scene, hit, before);
+        self.path.direction = crossing.direction;
+        self.path.radiance_factor *= crossing.eta_ratio * crossing.eta_ratio;
         self.path.found = self.path.found.after_specular();
     }
 
-    /// Weighs the path by a reflectance and enters the difference into the ledger.
+    /// Weighs the path by a reflectance.
     #[inline]
     fn absorb_on_surface(&mut self, factor: Spectrum<C>) {
-        let lost = self.path.scale(factor);
-        self.ledger.absorbed_on_surfaces += lost;
+        absorb_on_surface(&mut self.path.weight, factor, self.ledger);
     }
 }

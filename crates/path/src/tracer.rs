@@ -8,18 +8,14 @@ use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Media, Plan, Scene, Transport};
 
 use crate::PathOptions;
-use crate::light::Strategies;
 use crate::options::grid;
 use crate::walk::Walk;
+use crate::world::{Strategies, World};
 
 /// The transient volumetric path tracer on `C` transported channels.
 pub struct PathTracer<'a, const C: usize> {
-    pub(crate) scene: &'a Scene,
-    pub(crate) integrator: IntegratorSpec,
-    pub(crate) strategies: Strategies,
+    pub(crate) world: World<'a>,
     samples: NonZeroU32,
-    /// Of one path in its pixel: 1/samples.
-    pub(crate) share: f64,
 }
 
 impl<'a, const C: usize> PathTracer<'a, C> {
@@ -40,7 +36,8 @@ impl<'a, const C: usize> PathTracer<'a, C> {
             hits: true,
             equiangular: plan.next_event_estimation && plan.media == Media::Scattering,
         };
-        Self { scene, integrator, strategies, samples, share: 1.0 / f64::from(samples.get()) }
+        let share = 1.0 / f64::from(samples.get());
+        Self { world: World { scene, integrator, strategies, share }, samples }
     }
 
     /// All paths of a strip's pixels; returns their ledger.
@@ -54,8 +51,9 @@ impl<'a, const C: usize> PathTracer<'a, C> {
                 let (column, row) = (sample % columns, sample / columns);
                 let x = corner.0 + (f64::from(column) + rng.uniform()) / f64::from(columns);
                 let y = corner.1 + (f64::from(row) + rng.uniform()) / f64::from(rows);
-                let direction = self.scene.sensor.direction(x, y);
-                Walk::new(self, direction, &mut rng, &mut ledger, (&mut *strip, pixel)).run();
+                let direction = self.world.scene.sensor.direction(x, y);
+                Walk::new(&self.world, direction, &mut rng, &mut ledger, (&mut *strip, pixel))
+                    .run();
             }
         }
         ledger

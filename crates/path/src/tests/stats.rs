@@ -16,7 +16,7 @@ pub(super) const FALSE_ALARM: f64 = 1e-6;
 
 /// An empty film as the tracer's scene wants it.
 pub(super) fn film<const C: usize>(tracer: &PathTracer<'_, C>) -> TransientFilm<C> {
-    let spec = &tracer.scene.film;
+    let spec = &tracer.world.scene.film;
     let time = spec.time.map(|time| TimeAxis {
         start_opl: time.start_opl,
         bin_width_opl: time.bin_width_opl,

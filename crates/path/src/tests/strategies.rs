@@ -9,7 +9,7 @@ use super::worlds::{BLACK, ball};
 use super::worlds::{
     FOG, camera, depths, diffuse, filled, lamp, medium, plate, shape, time, tracer,
 };
-use crate::light::Strategies;
+use crate::world::Strategies;
 
 const BLOCKS: usize = 4;
 
@@ -31,7 +31,7 @@ fn scene() -> Scene {
 
 fn run(scene: &Scene, seed: u64, samples: u32, strategies: Strategies) -> Estimates {
     let mut tracer = tracer::<3>(scene, depths(2, 4), samples);
-    tracer.strategies = strategies;
+    tracer.world.strategies = strategies;
     estimate(&tracer, seed, 32, image_and_blocks(BLOCKS))
 }
 

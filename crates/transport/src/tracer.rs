@@ -1,0 +1,228 @@
+//! Photons from the emitters to their ends.
+//!
+//! A photon flies through null boundaries to the next surface, unless its free flight
+//! ([`FreeFlight`]) ends in a collision on the way. A collision leaves the albedo's share, a diffuse
+//! surface its reflectance's; smooth glass reflects with the probability of the Fresnel reflectance.
+//! Fluxes do not scale with η² on refraction. Media that only absorb weigh photons, and end none.
+//!
+//! **Depth.** After n scattering events (of any kind but null crossings) a photon's next flight
+//! adds paths of depth n + 2. It goes on while [`IntegratorSpec::reaches`] allows that depth;
+//! `min_depth` is the visitor's business. Roulette ends photons from `rr_depth` events on.
+//!
+//! **Ledger.** Every photon's power is booked to rounding: see [`FlightWeight::apply`] for colour.
+//! Spot lights sample directions uniformly; what they emit is what the photons carry.
+//!
+//! **Determinism.** A photon has a random stream of its own, (seed, pass, number), and photons are
+//! divided into chunks by their number alone: threads do not matter.
+//!
+//! [`FlightWeight::apply`]: crate::FlightWeight::apply
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use tpb_film::Ledger;
+use tpb_optics::{Frame, Rgb, Stream, fresnel, warp};
+use tpb_scene::{Bsdf, Flight, Hit, IntegratorSpec, Reflector, Scene, Vertex};
+
+use crate::carrier::absorb_on_surface;
+use crate::{Crossing, FreeFlight, Outcome, Part, Photon, SurfaceArrival};
+
+/// Photons per parallel task; the division does not depend on threads.
+const CHUNK: u64 = 512;
+
+/// What a method takes from photons on their way. A visitor that draws from `rng` moves the
+/// photon's later random numbers: its photons differ from those that another visitor sees.
+pub trait PhotonVisitor<const C: usize> {
+    /// A photon leaves its emitter.
+    #[inline]
+    fn emission(&mut self, photon: &Photon<C>, rng: &mut Stream) {
+        let _ = (photon, rng);
+    }
+
+    /// A photon starts along a flight, with its power at the start; `outcome` is where this flight
+    /// will end.
+    ///
+    /// Beyond its collision the flight goes on to the next surface, so that it can be used with its
+    /// expectation (transmittance) or as drawn: at a distance before the collision, or any if there
+    /// is none, an analog photon has power × [`FreeFlight::passing`]`(distance).total()`.
+    #[inline]
+    fn flight(
+        &mut self,
+        photon: &Photon<C>,
+        free: &FreeFlight<'_, C>,
+        outcome: &Outcome<'_, C>,
+        rng: &mut Stream,
+    ) {
+        let _ = (photon, free, outcome, rng);
+    }
+
+    /// A photon has collided in a medium, at its vertex: power after absorption, direction of
+    /// arrival.
+    #[inline]
+    fn collision(&mut self, photon: &Photon<C>, part: &Part<'_, C>, rng: &mut Stream) {
+        let _ = (photon, part, rng);
+    }
+
+    /// A photon has reached a surface that scatters diffusely, at its vertex: power and direction of
+    /// arrival.
+    #[inline]
+    fn surface(&mut self, photon: &Photon<C>, arrival: &SurfaceArrival, rng: &mut Stream) {
+        let _ = (photon, arrival, rng);
+    }
+}
+
+/// Which photons: all of a pass, each standing for 1/`count` of the light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PhotonBatch {
+    /// Seed of the run.
+    pub seed: u64,
+    /// Index of the pass.
+    pub pass: u64,
+    /// Number of photons.
+    pub count: u64,
+}
+
+/// Traces photons through a scene.
+#[derive(Clone, Copy)]
+pub struct PhotonTracer<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Depths.
+    pub integrator: IntegratorSpec,
+}
+
+impl PhotonTracer<'_> {
+    /// Traces a batch of photons on the current threads. Each chunk of consecutive photons has a
+    /// visitor of its own, which `visitor` makes from their numbers; all are returned in the
+    /// photons' order, with the ledger of all light.
+    pub fn trace<const C: usize, V: PhotonVisitor<C> + Send>(
+        &self,
+        batch: PhotonBatch,
+        visitor: impl Fn(Range<u64>) -> V + Sync,
+    ) -> (Vec<V>, Ledger) {
+        let PhotonBatch { seed, pass, count } = batch;
+        let chunks: Vec<(V, Ledger)> = (0..count.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let photons = chunk * CHUNK..(chunk * CHUNK + CHUNK).min(count);
+                let mut walk = Walk {
+                    tracer: *self,
+                    visitor: visitor(photons.clone()),
+                    ledger: Ledger::default(),
+                };
+                for index in photons {
+                    let mut rng = Stream::new(seed, pass, index);
+                    walk.photon::<C>(index, 1.0 / count as f64, &mut rng);
+                }
+                (walk.visitor, walk.ledger)
+            })
+            .collect();
+        let mut ledger = Ledger::default();
+        let visitors = chunks.into_iter().map(|(visitor, of_chunk)| {
+            ledger.add(&of_chunk);
+            visitor
+        });
+        (visitors.collect(), ledger)
+    }
+}
+
+/// One chunk's walk.
+struct Walk<'a, V> {
+    tracer: PhotonTracer<'a>,
+    visitor: V,
+    ledger: Ledger,
+}
+
+impl<V> Walk<'_, V> {
+    /// One photon that stands for `share` of the light.
+    fn photon<const C: usize>(&mut self, index: u64, share: f64, rng: &mut Stream)
+    where
+        V: PhotonVisitor<C>,
+    {
+        let PhotonTracer { scene, integrator } = self.tracer;
+        let Some(emission) = scene.emit::<C>(rng) else { return };
+        let mut photon = Photon::new(scene, &emission, index, share);
+        if photon.power.is_zero() {
+            return;
+        }
+        self.ledger.emitted += photon.power.luminance();
+        self.visitor.emission(&photon, rng);
+        while self.step(&mut photon, rng) && photon.survives(&integrator, rng, &mut self.ledger) {}
+    }
+
+    /// One flight and the event at its end; whether there is light left to go on.
+    fn step<const C: usize>(&mut self, photon: &mut Photon<C>, rng: &mut Stream) -> bool
+    where
+        V: PhotonVisitor<C>,
+    {
+        let scene = self.tracer.scene;
+        let flight = scene.fly(&photon.vertex, photon.direction);
+        let free = FreeFlight::new(scene, &flight, photon.power);
+        let outcome = free.sample(rng);
+        self.visitor.flight(photon, &free, &outcome, rng);
+        match outcome {
+            Outcome::Collision { distance, part, weight } => {
+                weight.apply(&mut photon.power, &mut self.ledger);
+                photon.opl += flight.opl(distance);
+                let (position, region) = (flight.at(distance), part.region);
+                photon.vertex = Vertex { position, primitive: None, region };
+                if !photon.power.is_zero() {
+                    self.visitor.collision(photon, &part, rng);
+                }
+                photon.direction = part.medium.phase.sample(photon.direction, rng);
+            }
+            Outcome::Survival { weight } => {
+                weight.apply(&mut photon.power, &mut self.ledger);
+                let Some(hit) = flight.hit else {
+                    self.ledger.escaped += photon.power.luminance();
+                    return false;
+                };
+                self.arrive(photon, &flight, &hit, rng);
+            }
+        }
+        photon.goes_on(&self.tracer.integrator, &mut self.ledger)
+    }
+
+    /// The surface at the end of a flight.
+    fn arrive<const C: usize>(
+        &mut self,
+        photon: &mut Photon<C>,
+        flight: &Flight,
+        hit: &Hit,
+        rng: &mut Stream,
+    ) where
+        V: PhotonVisitor<C>,
+    {
+        let scene = self.tracer.scene;
+        photon.opl += flight.opl(hit.distance);
+        let (position, primitive) = (hit.position, Some(hit.primitive));
+        photon.vertex = Vertex { position, primitive, region: flight.last_region() };
+        let front = photon.direction.dot(hit.normal) < 0.0;
+        let normal = if front { hit.normal } else { -hit.normal };
+        let (factor, direction) = match scene.shape(hit.primitive).bsdf {
+            Bsdf::Null => unreachable!("flights cross null boundaries"),
+            Bsdf::Dielectric(glass) => {
+                let crossing = Crossing::choose(&glass, photon.direction, hit.normal, rng);
+                photon.vertex.region = crossing.region(scene, hit, photon.vertex.region);
+                (crossing.factor, crossing.direction)
+            }
+            Bsdf::Opaque { front: on_front, back } => match if front { on_front } else { back } {
+                Reflector::Black => (Rgb::ZERO, normal),
+                Reflector::Mirror(rho) => (rho, fresnel::reflect(photon.direction, normal)),
+                Reflector::Diffuse(rho) => {
+                    if !(rho.is_zero() || photon.power.is_zero()) {
+                        let arrival = SurfaceArrival { hit: *hit, normal, reflectance: rho };
+                        self.visitor.surface(photon, &arrival, rng);
+                    }
+                    let local = warp::cosine_hemisphere(rng.uniform(), rng.uniform());
+                    (rho, Frame::from_z(normal).to_world(local))
+                }
+            },
+        };
+        absorb_on_surface(&mut photon.power, factor.channels(), &mut self.ledger);
+        photon.direction = direction;
+    }
+}
+
+#[cfg(test)]
+mod tests;
