@@ -113,6 +113,11 @@ macro_rules! solution {
     ($name:literal, $tolerance:expr, $($quantity:literal => $function:path),+) => {
         $crate::registry::solution!(@ $name, $tolerance, $((Some($quantity), $function)),+)
     };
+    ($name:literal, $tolerance:expr, $function:path, $($quantity:literal => $other:path),+) => {
+        $crate::registry::solution!(
+            @ $name, $tolerance, (None, $function), $((Some($quantity), $other)),+
+        )
+    };
     (@ $name:literal, $tolerance:expr, $(($quantity:expr, $function:path)),+) => {
         $crate::registry::Solution {
             name: $name,

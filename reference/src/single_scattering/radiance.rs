@@ -21,16 +21,6 @@
 //! is p e^(−σt (z + b tan(θ/2))) / b, which degenerates as b → 0; in ln q it does not
 //! (`path_integral`).
 //!
-//! # Fluence
-//!
-//! For isotropic scattering, the fluence rate \[W/m²\] at the distance r < x is (Ganapol,
-//! "Homogeneous Infinite Media Time-Dependent Analytical Benchmarks", 2001, first collision)
-//!
-//! > φ(r, t) = Q σs v e^(−σt x) / (4π r x) · ln((x + r)/(x − r)),
-//!
-//! written with log1p(2r/(x − r)), and with its limit 2/x at the source ([`once_scattered_fluence`]).
-//! It is infinite on the wavefront x = r, which is an error, and 0 before.
-//!
 //! # Not handled
 //!
 //! A ray of finite length, a boundary, other emitters than the isotropic point.
@@ -81,24 +71,6 @@ pub struct SingleScatterBin {
     pub t1: f64,
 }
 
-/// Inputs of [`once_scattered_fluence`].
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct OnceScattered {
-    /// Energy of the pulse \[J\].
-    pub energy: f64,
-    /// Scattering coefficient \[1/m\].
-    pub sigma_s: f64,
-    /// Extinction coefficient \[1/m\].
-    pub sigma_t: f64,
-    /// Speed of light in the medium \[m/s\].
-    pub speed: f64,
-    /// Distance from the source \[m\].
-    pub r: f64,
-    /// Time since the emission \[s\].
-    pub time: f64,
-}
-
 /// The radiance \[W/(m² sr)\] of once-scattered light at an instant.
 pub fn single_scatter_radiance(input: &SingleScatter) -> Result<f64> {
     let &SingleScatter { energy, sigma_s, sigma_t, g, speed, source_distance, alpha, time } = input;
@@ -133,21 +105,6 @@ pub fn single_scatter_radiance_bins(input: &SingleScatterBin) -> Result<f64> {
         decaying_integral(q_start, end - start, sigma_t, &scales, |q, _| ray.kernel(g, q))?;
     let strength = energy * sigma_s * (-sigma_t * start).exp();
     finite_result("single_scatter_radiance_bins", strength * integral)
-}
-
-/// The fluence rate \[W/m²\] of light scattered once and isotropically.
-pub fn once_scattered_fluence(input: &OnceScattered) -> Result<f64> {
-    let &OnceScattered { energy, sigma_s, sigma_t, speed, r, time } = input;
-    check_medium(energy, sigma_s, sigma_t, 0.0)?;
-    non_negative("r", r)?;
-    let path = path_length(speed, time)?;
-    if path < r {
-        return Ok(0.0);
-    }
-    require(path > r, "time", time, "other than the arrival of the wavefront")?;
-    let logarithm_per_r = if r > 0.0 { (2.0 * r / (path - r)).ln_1p() / r } else { 2.0 / path };
-    let strength = energy * sigma_s * speed * (-sigma_t * path).exp();
-    finite_result("once_scattered_fluence", strength / (4.0 * PI) / path * logarithm_per_r)
 }
 
 /// Checks what every solution of singly scattered light has in common.

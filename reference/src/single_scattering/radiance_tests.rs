@@ -55,22 +55,6 @@ fn all_time_is_the_steady_state_of_the_definition() {
 }
 
 #[test]
-fn the_integral_over_all_directions_is_the_fluence() {
-    // Radiance at the distance r from the source, seen in the direction alpha.
-    for (r, path) in [(1.0, 1.2), (0.3, 4.0), (5.0, 5.01)] {
-        let of = SingleScatter { g: 0.0, speed: 1.0, source_distance: r, time: path, ..SAMPLE };
-        let integrand = |alpha: f64| {
-            let radiance = single_scatter_radiance(&SingleScatter { alpha, ..of }).unwrap();
-            2.0 * PI * alpha.sin() * radiance
-        };
-        let sphere = adaptive(integrand, &[0.0, PI], 1e-12).unwrap().value;
-        let SingleScatter { energy, sigma_s, sigma_t, speed, time, .. } = of;
-        let input = OnceScattered { energy, sigma_s, sigma_t, speed, r, time };
-        close(sphere, once_scattered_fluence(&input).unwrap(), 1e-10);
-    }
-}
-
-#[test]
 fn the_integral_of_the_radiance_is_the_bin() {
     for g in [-0.99, -0.3, 0.0, 0.5, 0.99] {
         let of = SingleScatter { g, alpha: 0.02, ..SAMPLE };
@@ -133,31 +117,6 @@ fn great_optical_depths_and_late_times_end_in_zero() {
     assert_eq!(in_bin(&SAMPLE, 1e4, 1e300), 0.0);
     assert!(at(&clear, 1e100) > 0.0);
     assert_eq!(at(&clear, 1e200), 0.0);
-}
-
-#[test]
-fn the_fluence_at_the_source_is_the_limit() {
-    let input =
-        OnceScattered { energy: 1.0, sigma_s: 0.8, sigma_t: 1.0, speed: 1.0, r: 0.0, time: 1.3 };
-    let centre = once_scattered_fluence(&input).unwrap();
-    close(centre, 0.8 * (-1.3_f64).exp() / (2.0 * PI * 1.69), 1e-14);
-    for r in [1e-300, 1e-20, 1e-8] {
-        close(once_scattered_fluence(&OnceScattered { r, ..input }).unwrap(), centre, 1e-12);
-    }
-}
-
-#[test]
-fn the_fluence_is_dark_before_infinite_on_and_finite_behind_the_front() {
-    let at = |time: f64| {
-        let input =
-            OnceScattered { energy: 1.0, sigma_s: 0.8, sigma_t: 1.0, speed: 1.0, r: 2.0, time };
-        once_scattered_fluence(&input)
-    };
-    assert_eq!(at(2.0_f64.next_down()).unwrap(), 0.0);
-    assert!(at(2.0).is_err());
-    let behind = 2.0_f64.next_up();
-    let expected = 0.8 * (-2.0_f64).exp() / (16.0 * PI) * (4.0 / (behind - 2.0)).ln();
-    close(at(behind).unwrap(), expected, 1e-12);
 }
 
 prop_compose! {
@@ -223,20 +182,18 @@ proptest! {
 
     #[test]
     fn wild_inputs_give_a_value_or_an_error(
-        exponents in prop::array::uniform8(-320.0..308.0_f64),
+        exponents in prop::array::uniform7(-320.0..308.0_f64),
         g in -1.1..1.1_f64,
         alpha in -0.1..3.3_f64,
     ) {
-        let [energy, sigma_s, sigma_t, speed, source_distance, r, t0, width] =
+        let [energy, sigma_s, sigma_t, speed, source_distance, t0, width] =
             exponents.map(|e| 10.0_f64.powf(e));
         let of = SingleScatter {
             energy, sigma_s, sigma_t, g, speed, source_distance, alpha, time: t0,
         };
-        let fluence = OnceScattered { energy, sigma_s, sigma_t, speed, r, time: t0 };
         for result in [
             single_scatter_radiance(&of),
             single_scatter_radiance_bins(&bin(&of, t0, t0 + width)),
-            once_scattered_fluence(&fluence),
         ] {
             prop_assert!(result.as_ref().map_or(true, |v| v.is_finite() && *v >= 0.0), "{result:?}");
         }
