@@ -28,11 +28,11 @@
 pub mod ballistic;
 pub mod beams;
 pub mod diffuse_sphere;
-mod diffusion;
+pub mod diffusion;
 mod dwell;
 pub mod error;
 pub mod infinite_medium;
-mod interfaces;
+pub mod interfaces;
 pub mod numerics;
 pub mod phase;
 pub mod registry;

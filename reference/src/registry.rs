@@ -4,6 +4,10 @@
 //! its own, `SOLUTIONS` in its `mod.rs`; a line gives the name of the table, the class of its
 //! tolerance, the function (or one for each of the quantities that the table distinguishes), what it
 //! is, and in which unit. A solution is exact unless it says otherwise ([`Solution::approximate`]).
+//!
+//! The structs of the solutions are strict. Where a table leaves out inputs that it fixes, the
+//! solution names them with these values ([`Solution::defaults`]), and [`Solution::complete`] fills
+//! them in.
 
 use crate::error::{ReferenceError, Result};
 use crate::{
@@ -44,8 +48,12 @@ pub struct Solution {
     pub quantities: &'static [Quantity],
     /// What it is, in one line.
     pub summary: &'static str,
-    /// The unit of its value, "1" for a pure number.
+    /// The unit of its value, "1" for a pure number; see [`Solution::unit_of`].
     pub unit: &'static str,
+    /// The units of its quantities, in their order, where they differ; else empty.
+    pub units: &'static [&'static str],
+    /// Inputs that may be left out, with the JSON text of their values.
+    pub defaults: &'static [(&'static str, &'static str)],
     /// For an approximation, where and how well it holds; `None` for exact solutions.
     pub approximate: Option<&'static str>,
 }
@@ -87,14 +95,47 @@ impl ToleranceClass {
 }
 
 impl Solution {
-    /// The quantity that table rows call by this name, or the only one if they call none.
+    /// The quantity of this name, or the only one if none is given.
     pub fn quantity(&self, name: Option<&str>) -> Option<&'static Quantity> {
         self.quantities.iter().find(|quantity| quantity.name == name)
+    }
+
+    /// The unit of one of its quantities.
+    pub fn unit_of(&self, quantity: &Quantity) -> &'static str {
+        let index = self.quantities.iter().position(|other| other.name == quantity.name);
+        index.and_then(|index| self.units.get(index)).copied().unwrap_or(self.unit)
+    }
+
+    /// The inputs with defaults for those that may be left out.
+    pub fn complete(&self, quantity: &Quantity, inputs: &Map<String, Value>) -> Map<String, Value> {
+        let mut complete = inputs.clone();
+        let keys = (quantity.keys)();
+        for &(key, text) in self.defaults.iter().filter(|(key, _)| keys.contains(key)) {
+            // A test parses every default.
+            let value = || serde_json::from_str(text).unwrap_or(Value::Null);
+            complete.entry(key).or_insert_with(value);
+        }
+        complete
     }
 
     /// With its summary and unit.
     pub(crate) const fn describe(mut self, summary: &'static str, unit: &'static str) -> Self {
         (self.summary, self.unit) = (summary, unit);
+        self
+    }
+
+    /// With the unit of each quantity.
+    pub(crate) const fn units(mut self, units: &'static [&'static str]) -> Self {
+        self.units = units;
+        self
+    }
+
+    /// With inputs that may be left out, and the JSON text of their values.
+    pub(crate) const fn defaults(
+        mut self,
+        defaults: &'static [(&'static str, &'static str)],
+    ) -> Self {
+        self.defaults = defaults;
         self
     }
 
@@ -129,6 +170,8 @@ macro_rules! solution {
             }),+],
             summary: "",
             unit: "",
+            units: &[],
+            defaults: &[],
             approximate: None,
         }
     };
@@ -195,6 +238,18 @@ mod tests {
     fn every_solution_says_what_it_is_and_in_which_unit() {
         for solution in solutions() {
             assert!(!solution.summary.is_empty() && !solution.unit.is_empty(), "{solution:?}");
+            assert!([0, solution.quantities.len()].contains(&solution.units.len()), "{solution:?}");
+        }
+    }
+
+    #[test]
+    fn every_default_is_json_and_belongs_to_an_input() {
+        for solution in solutions() {
+            for (key, text) in solution.defaults {
+                assert!(serde_json::from_str::<Value>(text).is_ok(), "{}: {key}", solution.name);
+                let known = |quantity: &Quantity| (quantity.keys)().contains(key);
+                assert!(solution.quantities.iter().any(known), "{}: {key}", solution.name);
+            }
         }
     }
 

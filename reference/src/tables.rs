@@ -5,6 +5,10 @@
 //! precision. The file is read strictly if its name belongs to a solution ([`registry`]); other
 //! files only need to be JSON with rows, and are reported as unknown.
 //!
+//! A row may leave out inputs that the table fixes, and say so behind the name of the quantity, as in
+//! "time R=1 L=4 c=1": what counts is the name up to the first space or parenthesis, and the
+//! solution's defaults are those values ([`Solution::defaults`]).
+//!
 //! The error of a row is relative to its value. A value of 0 stands for darkness, before a front
 //! or outside a kernel, which is a matter of cases and not of rounding: it must be met exactly.
 //!
@@ -121,9 +125,11 @@ fn compare(solution: &Solution, rows: &[Row]) -> Comparison {
 }
 
 fn row_error(solution: &Solution, index: usize, row: &Row) -> RowError {
-    let found = match solution.quantity(row.quantity.as_deref()) {
+    let name = row.quantity.as_deref().and_then(|name| name.split([' ', '(']).next());
+    let found = match solution.quantity(name) {
         None => Err(format!("{} has no such quantity", solution.name)),
-        Some(quantity) => (quantity.evaluate)(&row.inputs).map_err(|error| explain(&error)),
+        Some(quantity) => (quantity.evaluate)(&solution.complete(quantity, &row.inputs))
+            .map_err(|error| explain(&error)),
     };
     let relative_error = found.as_ref().map_or(f64::INFINITY, |&v| relative_error(v, row.value));
     RowError { row: index, expected: row.value, found, relative_error }
