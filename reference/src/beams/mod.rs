@@ -1,6 +1,7 @@
 //! Ray-beam kernels, and what beam estimates are expected to give.
 
 pub mod beam_ray;
+pub mod even_spread;
 pub mod expected_blur;
 pub mod expected_blur_disc;
 
@@ -8,6 +9,7 @@ use crate::registry::Solution;
 use crate::registry::ToleranceClass::{ClosedForm, Quadrature};
 use crate::registry::solution;
 use beam_ray::{beam_ray_1d, beam_ray_2d_bins};
+use even_spread::{first_quarter_share, mean_shift, midpoint_total};
 use expected_blur::{expected_blur_1d, expected_blur_1d_bins};
 use expected_blur_disc::{expected_blur_2d, expected_blur_2d_bins};
 
@@ -16,6 +18,14 @@ pub(crate) static SOLUTIONS: &[Solution] = &[
         .describe("energy that the 1D kernel carries from a beam to a ray", "J/(m^2 sr)"),
     solution!("beam_ray_2d_bins", Quadrature, beam_ray_2d_bins)
         .describe("energy that the 2D kernel carries to a ray within a bin", "J/(m^2 sr)"),
+    solution!(
+        "even_vs_exact_spread",
+        ClosedForm,
+        "first-quarter share" => first_quarter_share,
+        "mean shift/A" => mean_shift,
+        "uniform-with-midpoint-transmittance total / exact total" => midpoint_total
+    )
+    .describe("what spreading a pair's energy evenly in time costs", "1"),
     solution!("expected_blur_1d", Quadrature, expected_blur_1d)
         .describe("expected value of the 1D beam estimate of a point pulse", "W/(m^2 sr)"),
     solution!("expected_blur_1d_bins", Quadrature, expected_blur_1d_bins)
