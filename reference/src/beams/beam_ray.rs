@@ -142,7 +142,7 @@ pub fn beam_ray_2d_bins(input: &BeamRay2dBin) -> Result<f64> {
     finite_result("beam_ray_2d_bins", scattered * spread)
 }
 
-fn check_lengths(radius: f64, beam_length: f64, ray_length: f64) -> Result<()> {
+pub(super) fn check_lengths(radius: f64, beam_length: f64, ray_length: f64) -> Result<()> {
     positive("radius", radius)?;
     non_negative("beam_length", beam_length)?;
     non_negative("ray_length", ray_length)?;
@@ -150,35 +150,36 @@ fn check_lengths(radius: f64, beam_length: f64, ray_length: f64) -> Result<()> {
 }
 
 /// The mean of e^(−u) over 0 < u < x.
-fn decay_mean(x: f64) -> f64 {
+pub(super) fn decay_mean(x: f64) -> f64 {
     if x > 0.0 { -(-x).exp_m1() / x } else { 1.0 }
 }
 
 /// An interval of positions along the camera ray.
-type Span = (f64, f64);
+pub(super) type Span = (f64, f64);
 
 /// The common part of two intervals, unless it is empty.
-fn clip(a: Span, b: Span) -> Option<Span> {
+pub(super) fn clip(a: Span, b: Span) -> Option<Span> {
     let (start, end) = (a.0.max(b.0), a.1.min(b.1));
     (start < end).then_some((start, end))
 }
 
 /// A beam and a camera ray, in what is common to all kernels.
 #[derive(Debug, Clone, Copy)]
-struct Pair {
-    beam_direction: Vector,
+pub(super) struct Pair {
+    pub(super) beam_direction: Vector,
+    pub(super) ray_direction: Vector,
     /// From the beam's origin to the ray's.
-    offset: Vector,
+    pub(super) offset: Vector,
     /// d × ω, of length sin ψ.
-    normal: Vector,
-    sin_psi: f64,
-    cos_psi: f64,
+    pub(super) normal: Vector,
+    pub(super) sin_psi: f64,
+    pub(super) cos_psi: f64,
     /// 1 + cos ψ = 1 − cos θ.
-    kappa: f64,
+    pub(super) kappa: f64,
     /// 1 − cos ψ = 1 + cos θ.
     kappa_complement: f64,
     /// The position along the beam of the foot of the ray's origin.
-    foot_at_start: f64,
+    pub(super) foot_at_start: f64,
 }
 
 /// Where the lines of a beam and a ray come closest.
@@ -190,7 +191,7 @@ struct Crossing {
 }
 
 impl Pair {
-    fn new(beam: (Vector, Vector), ray: (Vector, Vector)) -> Result<Self> {
+    pub(super) fn new(beam: (Vector, Vector), ray: (Vector, Vector)) -> Result<Self> {
         vector::finite("beam_origin", beam.0)?;
         vector::finite("ray_origin", ray.0)?;
         let beam_direction = unit("beam_direction", beam.1)?;
@@ -207,6 +208,7 @@ impl Pair {
         let foot_at_start = dot(offset, beam_direction);
         Ok(Self {
             beam_direction,
+            ray_direction,
             offset,
             normal,
             sin_psi,
@@ -217,7 +219,7 @@ impl Pair {
         })
     }
 
-    fn deflection(&self) -> Deflection {
+    pub(super) fn deflection(&self) -> Deflection {
         Deflection { sin2_half: 0.5 * self.kappa, cos2_half: 0.5 * self.kappa_complement }
     }
 
@@ -233,7 +235,7 @@ impl Pair {
     }
 
     /// Where the ray is inside the infinite cylinder around the beam.
-    fn inside_cylinder(&self, radius: f64) -> Option<Span> {
+    pub(super) fn inside_cylinder(&self, radius: f64) -> Option<Span> {
         let distance_at_start = length(cross(self.offset, self.beam_direction));
         if self.sin_psi == 0.0 {
             return (distance_at_start < radius).then_some((f64::NEG_INFINITY, f64::INFINITY));

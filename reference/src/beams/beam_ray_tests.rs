@@ -1,5 +1,6 @@
 use super::*;
 use crate::numerics::quadrature::tanh_sinh;
+use crate::numerics::vector::add;
 use proptest::prelude::*;
 
 const EVER: f64 = 1e6;
@@ -48,10 +49,6 @@ fn line(of: &BeamRay2dBin) -> BeamRay1d {
 
 fn close(value: f64, expected: f64, relative: f64) {
     assert!((value - expected).abs() <= relative * expected.abs(), "{value:e} for {expected:e}");
-}
-
-fn add(a: Vector, b: Vector) -> Vector {
-    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// The definition: a sum over points of the ray of what the disc kernel gives each of them.

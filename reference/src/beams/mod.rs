@@ -1,6 +1,7 @@
 //! Ray-beam kernels, and what beam estimates are expected to give.
 
 pub mod beam_ray;
+pub mod beam_ray_sphere;
 pub mod even_spread;
 pub mod expected_blur;
 pub mod expected_blur_disc;
@@ -9,6 +10,7 @@ use crate::registry::Solution;
 use crate::registry::ToleranceClass::{ClosedForm, Quadrature};
 use crate::registry::solution;
 use beam_ray::{beam_ray_1d, beam_ray_2d_bins};
+use beam_ray_sphere::{beam_ray_3d, beam_ray_3d_bins};
 use even_spread::{first_quarter_share, mean_shift, midpoint_total};
 use expected_blur::{expected_blur_1d, expected_blur_1d_bins};
 use expected_blur_disc::{expected_blur_2d, expected_blur_2d_bins};
@@ -18,6 +20,10 @@ pub(crate) static SOLUTIONS: &[Solution] = &[
         .describe("energy that the 1D kernel carries from a beam to a ray", "J/(m^2 sr)"),
     solution!("beam_ray_2d_bins", Quadrature, beam_ray_2d_bins)
         .describe("energy that the 2D kernel carries to a ray within a bin", "J/(m^2 sr)"),
+    solution!("beam_ray_3d", Quadrature, beam_ray_3d)
+        .describe("energy that the 3D kernel carries from a beam to a ray", "J/(m^2 sr)"),
+    solution!("beam_ray_3d_bins", Quadrature, beam_ray_3d_bins)
+        .describe("the same within a bin of time", "J/(m^2 sr)"),
     solution!(
         "even_vs_exact_spread",
         ClosedForm,
