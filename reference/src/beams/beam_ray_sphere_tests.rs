@@ -89,7 +89,7 @@ fn an_unclipped_crossing_meets_the_closed_form() {
         ([-0.4, 0.0, 1.0], 0.5, 700.0),
         ([0.2, 0.0, 1.0], 0.5, 1e5),
     ] {
-        let of = BeamRay3dBin { ray_direction, radius, ..CROSSING };
+        let of = BeamRay3dBin { radius, ray_direction, ..CROSSING };
         let norm = length(ray_direction);
         let (sin_psi, cos_psi) = (1.0 / norm, ray_direction[0] / norm);
         // Close enough to the corner that light arrives.

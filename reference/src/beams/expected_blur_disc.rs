@@ -19,7 +19,7 @@
 //! integral over t0 ≤ t < t1 \[J/(m² sr)\], split at the true front, where the density has a kink.
 //!
 //! Domain: b > R > 0; isotropic scattering only, because the kernel tilts the directions of the beams
-//! that see one point, and p then stays inside the average.
+//! that see one point, and p then stays inside the average ([`super::expected_blur_disc_hg`]).
 
 use crate::error::{Result, finite, finite_result, path_bin, path_length, positive, require};
 use crate::numerics::path_integral::decaying_integral;
@@ -114,17 +114,17 @@ pub fn expected_blur_2d_bins(input: &Blur2dBin) -> Result<f64> {
 
 /// The geometry of source, ray and disc; its kernels are E\[L\] without Q σs v e^(−σt x).
 #[derive(Debug, Clone, Copy)]
-struct DiscBlur {
+pub(super) struct DiscBlur {
     /// b
-    offset: f64,
+    pub(super) offset: f64,
     /// z
     source_z: f64,
     /// R
-    radius: f64,
+    pub(super) radius: f64,
 }
 
 impl DiscBlur {
-    fn new(offset: f64, source_z: f64, radius: f64) -> Result<Self> {
+    pub(super) fn new(offset: f64, source_z: f64, radius: f64) -> Result<Self> {
         positive("radius", radius)?;
         finite("source_z", source_z)?;
         positive("ray_offset", offset)?;
@@ -133,22 +133,22 @@ impl DiscBlur {
     }
 
     /// The path length of the earliest blurred light.
-    fn onset(&self) -> f64 {
+    pub(super) fn onset(&self) -> f64 {
         self.source_z.hypot(self.core2().sqrt())
     }
 
     /// The path length of the earliest light of the source itself.
-    fn front(&self) -> f64 {
+    pub(super) fn front(&self) -> f64 {
         self.source_z.hypot(self.offset)
     }
 
     /// b² − R²
-    fn core2(&self) -> f64 {
+    pub(super) fn core2(&self) -> f64 {
         (self.offset - self.radius) * (self.offset + self.radius)
     }
 
     /// x − z at `passed` beyond `front`, where x² = z² + `distance2`, without cancellation.
-    fn q_beyond(&self, front: f64, distance2: f64, passed: f64) -> f64 {
+    pub(super) fn q_beyond(&self, front: f64, distance2: f64, passed: f64) -> f64 {
         if self.source_z > 0.0 {
             distance2 / (front + self.source_z) + passed
         } else {

@@ -5,6 +5,8 @@ pub mod beam_ray_sphere;
 pub mod even_spread;
 pub mod expected_blur;
 pub mod expected_blur_disc;
+pub mod expected_blur_disc_hg;
+pub mod expected_blur_sphere;
 
 use crate::registry::Solution;
 use crate::registry::ToleranceClass::{ClosedForm, Quadrature};
@@ -14,6 +16,8 @@ use beam_ray_sphere::{beam_ray_3d, beam_ray_3d_bins};
 use even_spread::{first_quarter_share, mean_shift, midpoint_total};
 use expected_blur::{expected_blur_1d, expected_blur_1d_bins};
 use expected_blur_disc::{expected_blur_2d, expected_blur_2d_bins};
+use expected_blur_disc_hg::{expected_blur_2d_hg, expected_blur_2d_hg_bins};
+use expected_blur_sphere::{expected_blur_3d, expected_blur_3d_bins};
 
 pub(crate) static SOLUTIONS: &[Solution] = &[
     solution!("beam_ray_1d", ClosedForm, beam_ray_1d)
@@ -39,5 +43,13 @@ pub(crate) static SOLUTIONS: &[Solution] = &[
     solution!("expected_blur_2d", ClosedForm, expected_blur_2d)
         .describe("expected value of the 2D beam estimate of a point pulse", "W/(m^2 sr)"),
     solution!("expected_blur_2d_bins", Quadrature, expected_blur_2d_bins)
+        .describe("the same within a bin of time", "J/(m^2 sr)"),
+    solution!("expected_blur_2d_hg", Quadrature, expected_blur_2d_hg)
+        .describe("expected value of the 2D beam estimate for any mean cosine g", "W/(m^2 sr)"),
+    solution!("expected_blur_2d_hg_bins", Quadrature, expected_blur_2d_hg_bins)
+        .describe("the same within a bin of time", "J/(m^2 sr)"),
+    solution!("expected_blur_3d", Quadrature, expected_blur_3d)
+        .describe("expected value of the 3D beam estimate of a point pulse", "W/(m^2 sr)"),
+    solution!("expected_blur_3d_bins", Quadrature, expected_blur_3d_bins)
         .describe("the same within a bin of time", "J/(m^2 sr)"),
 ];

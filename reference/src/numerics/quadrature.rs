@@ -42,6 +42,16 @@ pub struct Node {
 
 /// The integral from the first to the last of `breaks`, which ascend; adaptive G7-K15.
 pub fn adaptive(
+    integrand: impl FnMut(f64) -> f64,
+    breaks: &[f64],
+    relative_tolerance: f64,
+) -> Result<Estimate> {
+    adaptive_above(0.0, integrand, breaks, relative_tolerance)
+}
+
+/// [`adaptive`] of an integrand with rounding noise: an error up to `noise` is enough as well.
+pub fn adaptive_above(
+    noise: f64,
     mut integrand: impl FnMut(f64) -> f64,
     breaks: &[f64],
     relative_tolerance: f64,
@@ -56,7 +66,7 @@ pub fn adaptive(
             value: panels.iter().map(|panel| panel.integral.value).sum(),
             error: panels.iter().map(|panel| panel.integral.error).sum(),
         };
-        if total.error <= relative_tolerance * total.value.abs() {
+        if total.error <= noise.max(relative_tolerance * total.value.abs()) {
             return Ok(total);
         }
         let worst = (0..panels.len())
