@@ -1,11 +1,12 @@
 //! One estimator against one expected cube: batches in, outcome with a z map out.
 
+use tpb_film::TimeAxis;
 use tpb_scene::Scene;
 
 use crate::contrasts::{LinearContrast, targets};
 use crate::cube::Cube;
 use crate::error::Result;
-use crate::experiment::{Context, Outcome, ZMap};
+use crate::experiment::{BinPlot, Context, Outcome, ZMap};
 use crate::measure::{BatchPlan, Estimator, batches};
 use crate::sabotage::Sabotage;
 use crate::statistics::{Batches, Criterion, judge};
@@ -37,15 +38,18 @@ impl Comparison<'_> {
     pub fn run(self, context: &Context) -> Result<Outcome> {
         let mut values = Batches::new();
         let mut cells = CellMoments::new(self.expected.values.len());
+        let mut sums = CellMoments::new(self.expected.bins);
         let layout = context.layout(&self.scene.film)?;
         batches(self.scene, &self.estimator, layout, &self.plan, |cube| {
             let cube = &self.spoil(cube, context);
             values.push(self.contrasts.iter().map(|c| c.value(cube)).collect());
-            cells.add(cube);
+            cells.add(&cube.values);
+            sums.add(&cube.sum_of_pixels());
         })?;
         let targets = targets(self.contrasts, self.expected, self.coarser);
         let mut outcome: Outcome = judge(&targets, &values, &self.criterion).into();
         outcome.z_map = Some(cells.z_map(self.expected));
+        outcome.bins = layout.time.map(|axis| sums.plot(&axis, self.expected.sum_of_pixels()));
         Ok(outcome)
     }
 
@@ -75,23 +79,29 @@ impl CellMoments {
         Self { batches: 0.0, mean: vec![0.0; cells], squares: vec![0.0; cells] }
     }
 
-    fn add(&mut self, cube: &Cube) {
+    fn add(&mut self, values: &[f64]) {
         self.batches += 1.0;
         let moments = self.mean.iter_mut().zip(&mut self.squares);
-        for ((mean, squares), value) in moments.zip(&cube.values) {
+        for ((mean, squares), value) in moments.zip(values) {
             let before = value - *mean;
             *mean += before / self.batches;
             *squares += before * (value - *mean);
         }
     }
 
+    fn standard_error(&self, cell: usize) -> f64 {
+        (self.squares[cell] / (self.batches * (self.batches - 1.0))).sqrt()
+    }
+
+    fn plot(self, axis: &TimeAxis, expected: Vec<f64>) -> BinPlot {
+        let standard_error = (0..expected.len()).map(|bin| self.standard_error(bin)).collect();
+        let opl = axis.edges().windows(2).map(|ends| 0.5 * (ends[0] + ends[1])).collect();
+        BinPlot { opl, expected, mean: self.mean, standard_error }
+    }
+
     /// (mean − expected)/standard error of every bin; NaN where there is no noise.
     fn z_map(&self, expected: &Cube) -> ZMap {
-        let n = self.batches;
-        let z = |cell: usize| {
-            let standard_error = (self.squares[cell] / (n * (n - 1.0))).sqrt();
-            (self.mean[cell] - expected.values[cell]) / standard_error
-        };
+        let z = |cell: usize| (self.mean[cell] - expected.values[cell]) / self.standard_error(cell);
         let per_pixel = expected.bins + 2;
         let row =
             |pixel: usize| (1..=expected.bins).map(|bin| z(pixel * per_pixel + bin)).collect();
@@ -110,7 +120,7 @@ mod tests {
             let mut cube = Cube::zero(1, 1, 1);
             cube.pixel_mut(0)[1] = value;
             cube.scale(2.0);
-            cells.add(&cube);
+            cells.add(&cube.values);
         }
         // Mean 4, standard error 2/√3.
         let z = cells.z_map(&Cube::zero(1, 1, 1)).rows[0][0];

@@ -44,6 +44,28 @@ impl Cube {
         cube
     }
 
+    /// The arrays of a render, its channels one below the other as images of their own: pixel p of
+    /// channel c is pixel p + c · (width · height).
+    pub fn stacked(arrays: &Arrays) -> Self {
+        let &Arrays { width, height, bins, channels, .. } = arrays;
+        let pixels = width * height;
+        let mut cube = Self::zero(width, height * channels, bins);
+        for (pixel, channel) in (0..pixels).flat_map(|p| (0..channels).map(move |c| (p, c))) {
+            let at = pixel * channels + channel;
+            let cells = cube.pixel_mut(pixel + channel * pixels);
+            if bins == 0 {
+                cells[0] = arrays.steady[at];
+                continue;
+            }
+            (cells[0], cells[bins + 1]) = (arrays.before[at], arrays.after[at]);
+            let line = arrays.pixel(pixel);
+            for (bin, cell) in cells[1..=bins].iter_mut().enumerate() {
+                *cell = f64::from(line[bin * channels + channel]);
+            }
+        }
+        cube
+    }
+
     /// Number of pixels.
     pub fn pixels(&self) -> usize {
         self.width * self.height
@@ -64,6 +86,17 @@ impl Cube {
     /// The bins of a pixel.
     pub fn pixel_bins(&self, pixel: usize) -> &[f64] {
         &self.pixel(pixel)[1..=self.bins]
+    }
+
+    /// The sum over pixels of each bin.
+    pub fn sum_of_pixels(&self) -> Vec<f64> {
+        let mut sums = vec![0.0; self.bins];
+        for pixel in 0..self.pixels() {
+            for (sum, value) in sums.iter_mut().zip(self.pixel_bins(pixel)) {
+                *sum += value;
+            }
+        }
+        sums
     }
 
     /// Multiplies everything.

@@ -18,6 +18,7 @@ use tpb_scene::{FilmSpec, Scene, SceneParts};
 
 use crate::equal_time::EqualTime;
 use crate::error::Result;
+use crate::experiments::calibration::Rate;
 use crate::measure;
 use crate::registry;
 use crate::sabotage::Sabotage;
@@ -136,13 +137,33 @@ pub struct Outcome {
     pub miss: f64,
     /// Remarks for the reader.
     pub notes: Vec<String>,
+    /// Independent batches; 0 where there are none.
+    pub batches: usize,
     /// All contrasts.
     pub contrasts: Vec<Contrast>,
     /// The table of an equal-time run.
     pub equal_time: Option<EqualTime>,
+    /// Observed rates of false alarms.
+    pub calibration: Vec<Rate>,
     /// Deviations of all bins; written apart when the experiment fails.
     #[serde(skip)]
     pub z_map: Option<ZMap>,
+    /// The sum over pixels, bin by bin; likewise.
+    #[serde(skip)]
+    pub bins: Option<BinPlot>,
+}
+
+/// A time-resolved signal and its expectation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BinPlot {
+    /// Middle of each bin \[m\].
+    pub opl: Vec<f64>,
+    /// Expectation of each.
+    pub expected: Vec<f64>,
+    /// Mean over batches.
+    pub mean: Vec<f64>,
+    /// Standard error of that mean.
+    pub standard_error: Vec<f64>,
 }
 
 /// (mean − expected)/standard error of every bin of every pixel. A picture of where an error is;
@@ -168,9 +189,12 @@ impl Outcome {
             unresolved: 0.0,
             miss: 0.0,
             notes,
+            batches: 0,
             contrasts: Vec::new(),
             equal_time: None,
+            calibration: Vec::new(),
             z_map: None,
+            bins: None,
         }
     }
 
@@ -201,7 +225,9 @@ impl From<Judgement> for Outcome {
             let worst = judgement.contrasts.iter().min_by(|a, b| a.p.total_cmp(&b.p));
             notes.extend(worst.map(|c| format!("most significant: {} (z = {:.1})", c.name, c.z)));
         }
-        if judgement.finding == Finding::Unresolved {
+        notes
+            .extend(judgement.unfit.iter().map(|reason| format!("not fit to be judged: {reason}")));
+        if judgement.finding == Finding::Unresolved && judgement.unfit.is_empty() {
             notes.push("too noisy for the margin: not significantly different either".into());
         }
         Self {
@@ -213,9 +239,12 @@ impl From<Judgement> for Outcome {
             unresolved: judgement.unresolved,
             miss: judgement.miss,
             notes,
+            batches: judgement.batches,
             contrasts: judgement.contrasts,
             equal_time: None,
+            calibration: Vec::new(),
             z_map: None,
+            bins: None,
         }
     }
 }

@@ -9,8 +9,9 @@
 //! * [`equal_time`], [`reference_cube`]: methods against each other at equal time, and the long
 //!   render that both are compared with.
 //! * [`run_time`]: how the error of a method falls with the time it is given.
-//! * [`suite`], [`report`]: running many, and what is printed and written.
+//! * [`suite`]: running many; [`report`], [`pages`]: what is printed and what is kept of it.
 
+mod artefacts;
 pub mod comparison;
 pub mod contrasts;
 pub mod cube;
@@ -19,6 +20,7 @@ mod error;
 pub mod experiment;
 pub mod experiments;
 pub mod measure;
+pub mod pages;
 pub mod reference_cube;
 pub mod registry;
 pub mod report;

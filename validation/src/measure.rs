@@ -7,7 +7,7 @@ use tpb_beams::{BeamOptions, PhotonBeams};
 use tpb_film::{Arrays, FilmOptions, Layout, TimeAxis, TransientFilm};
 use tpb_path::{PathOptions, PathTracer};
 use tpb_render::{Budget, Method, RunSettings, RunSummary, Stopwatch, run};
-use tpb_scene::{FilmSpec, IntegratorSpec, Plan, Scene};
+use tpb_scene::{FilmSpec, IntegratorSpec, Plan, Scene, Transport};
 
 use crate::cube::Cube;
 use crate::error::{Result, ValidationError};
@@ -95,17 +95,31 @@ pub fn render<const C: usize>(
     Ok((film.develop(), summary))
 }
 
-/// Renders achromatic batches and hands each cube over.
+/// Renders batches and hands each cube over; channels are one below the other
+/// ([`Cube::stacked`]).
 pub fn batches(
     scene: &Scene,
     estimator: &Estimator,
     layout: Layout,
     plan: &BatchPlan,
+    each: impl FnMut(&Cube),
+) -> Result<()> {
+    let needs = Plan::new(scene, &scene.integrator);
+    match needs.transport {
+        Transport::Mono => batches_with::<1>(scene, &needs, estimator, layout, plan, each),
+        Transport::Rgb => batches_with::<3>(scene, &needs, estimator, layout, plan, each),
+    }
+}
+
+fn batches_with<const C: usize>(
+    scene: &Scene,
+    needs: &Plan,
+    estimator: &Estimator,
+    layout: Layout,
+    plan: &BatchPlan,
     mut each: impl FnMut(&Cube),
 ) -> Result<()> {
-    let integrator = scene.integrator;
-    let needs = Plan::new(scene, &integrator);
-    let method = estimator.prepare::<1>(scene, &needs, integrator)?;
+    let method = estimator.prepare::<C>(scene, needs, scene.integrator)?;
     for batch in 0..plan.batches {
         let settings = RunSettings {
             seed: plan.seed,
@@ -113,7 +127,7 @@ pub fn batches(
             first_pass: batch * plan.passes,
         };
         let (arrays, _) = render(&*method, layout, &settings)?;
-        each(&Cube::of(&arrays));
+        each(&Cube::stacked(&arrays));
     }
     Ok(())
 }

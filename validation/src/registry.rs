@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::experiment::{Effort, Experiment, Kind};
 use crate::experiments::{
-    energy, equal_time, fresnel, kernels, samplers, single_scatter, sphere, tables,
+    calibration, energy, equal_time, fresnel, kernels, samplers, single_scatter, sphere, tables,
 };
 use crate::sabotage::Twin;
 use crate::suite::SUITE_LEVEL;
@@ -34,6 +34,7 @@ pub fn level(effort: Effort) -> f64 {
 
 fn sound(effort: Effort) -> Experiments {
     [
+        calibration::all(),
         tables::all(),
         samplers::all(),
         kernels::all(),

@@ -1,15 +1,17 @@
 //! Running experiments one after another, and adding up what they found.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::Result;
+use crate::artefacts;
+use crate::error::{Result, ValidationError};
 use crate::experiment::{Context, Experiment, Outcome, Verdict};
-use crate::report;
+use crate::experiments::calibration::Rate;
+use crate::pages;
 
 /// The nominal false-alarm probability of a whole suite.
 pub const SUITE_LEVEL: f64 = 1e-6;
@@ -35,9 +37,24 @@ pub struct Record {
     pub files: Vec<PathBuf>,
 }
 
+/// Where and how a suite was run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Circumstances {
+    /// Commit of the sources.
+    pub commit: String,
+    /// Processor, number of threads, system.
+    pub machine: String,
+    /// Options.
+    pub flags: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+}
+
 /// The results of a suite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SuiteResult {
+    /// Where and how it was run.
+    pub circumstances: Circumstances,
     /// All records.
     pub records: Vec<Record>,
     /// Wall time \[s\].
@@ -55,6 +72,12 @@ impl SuiteResult {
     pub fn passed(&self) -> bool {
         self.records.iter().all(|record| record.verdict == Verdict::Passed)
     }
+
+    /// The observed rates of false alarms.
+    pub fn rates(&self) -> impl Iterator<Item = &Rate> {
+        let outcomes = self.records.iter().filter_map(|record| record.outcome.as_ref());
+        outcomes.flat_map(|outcome| &outcome.calibration)
+    }
 }
 
 /// Runs experiments, telling `each` record as it is made. `repeat` makes the command that repeats
@@ -62,6 +85,7 @@ impl SuiteResult {
 pub fn run_suite(
     experiments: &[Arc<dyn Experiment>],
     context: &Context,
+    circumstances: Circumstances,
     repeat: impl Fn(&str) -> String,
     mut each: impl FnMut(&Record),
 ) -> SuiteResult {
@@ -80,6 +104,7 @@ pub fn run_suite(
         unresolved: sum(|outcome| outcome.unresolved),
         nominal: SUITE_LEVEL,
         seconds: started.elapsed().as_secs_f64(),
+        circumstances,
         records,
     }
 }
@@ -111,7 +136,7 @@ fn run_one(
         Err(error) => record.error = Some(chain(&error)),
     }
     if record.verdict == Verdict::Failed {
-        match report::leave_tables(&record, context) {
+        match artefacts::leave(&record, context) {
             Ok(files) => record.files = files,
             Err(error) => record.error = Some(chain(&error)),
         }
@@ -131,13 +156,23 @@ fn chain(error: &dyn std::error::Error) -> String {
 }
 
 /// Writes the results as JSON.
-pub fn write_json(result: &SuiteResult, path: &std::path::Path) -> Result<()> {
+pub fn write_json(result: &SuiteResult, path: &Path) -> Result<()> {
     let text = serde_json::to_string_pretty(result)
-        .map_err(|error| crate::ValidationError::unusable("results", error))?;
+        .map_err(|error| ValidationError::unusable("results", error))?;
+    write(path, &(text + "\n"))
+}
+
+/// Writes the results as `results.json` and as the page `report.md` into a folder.
+pub fn write_results(result: &SuiteResult, folder: &Path) -> Result<()> {
+    write_json(result, &folder.join("results.json"))?;
+    write(&folder.join("report.md"), &pages::report(result))
+}
+
+fn write(path: &Path, text: &str) -> Result<()> {
     if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        fs::create_dir_all(folder).map_err(|error| crate::ValidationError::io(folder, error))?;
+        fs::create_dir_all(folder).map_err(|error| ValidationError::io(folder, error))?;
     }
-    fs::write(path, text + "\n").map_err(|error| crate::ValidationError::io(path, error))
+    fs::write(path, text).map_err(|error| ValidationError::io(path, error))
 }
 
 /// Whether a name matches a pattern of `*` (any text) and `?` (one character). A pattern
@@ -194,7 +229,7 @@ mod tests {
         }
 
         fn run(&self, _: &Context) -> Result<Outcome> {
-            let broken = || crate::ValidationError::unusable("script", "broken");
+            let broken = || ValidationError::unusable("script", "broken");
             let finding = self.1.ok_or_else(broken)?;
             let mut outcome = Outcome::exact(finding == Finding::Equivalent, vec![]);
             outcome.false_alarm = 1e-8;
@@ -212,15 +247,18 @@ mod tests {
             Arc::new(Scripted("a/broken", None)),
         ];
         let mut told = 0;
-        let result = run_suite(&experiments, &context, |name| format!("run {name}"), |_| told += 1);
+        let repeat = |name: &str| format!("run {name}");
+        let result =
+            run_suite(&experiments, &context, Circumstances::default(), repeat, |_| told += 1);
         assert_eq!(told, 3);
         assert!(!result.passed() && (result.false_alarm - 2e-8).abs() < 1e-20);
         assert_eq!(result.records[1].repeat, "run a/wrong");
         assert!(result.records[1].files.iter().all(|file| file.exists()));
         assert_eq!(result.records[2].error.as_deref(), Some("script: broken"));
-        let json = out.join("results.json");
-        write_json(&result, &json).unwrap();
-        let back: SuiteResult = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
+        write_results(&result, &out).unwrap();
+        let read = |name: &str| fs::read_to_string(out.join(name)).unwrap();
+        let back: SuiteResult = serde_json::from_str(&read("results.json")).unwrap();
+        assert!(read("report.md").contains("| a/wrong | FAILED |"));
         fs::remove_dir_all(&out).unwrap();
         assert_eq!(back, result);
     }

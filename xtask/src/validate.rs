@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use tpb_validation::experiment::{Context, Effort, Experiment};
 use tpb_validation::reference_cube::ReferenceCube;
+use tpb_validation::suite::Circumstances;
 use tpb_validation::{registry, report, scenes, suite, with_threads};
 use xshell::{Shell, cmd};
 
@@ -19,8 +20,8 @@ const EXAMPLES: &str = "Examples:
   cargo xtask validate --list                   the plan alone
 
 Exit codes: 0 passed, 1 an experiment failed, 2 usage or files.
-A failing experiment leaves its contrasts and everything it found under --out and prints the
-command that repeats it.";
+A report (report.md) and all results (results.json) are written to --out. A failing experiment leaves
+its contrasts, maps and plots there too, and prints the command that repeats it.";
 
 /// Options of `cargo xtask validate`.
 #[derive(Args)]
@@ -47,7 +48,8 @@ pub(crate) struct ValidateArgs {
     /// Threads [default: all]
     #[arg(long)]
     threads: Option<usize>,
-    /// Where failing experiments leave their tables [default: target/validation]
+    /// Folder of report.md, results.json, and of the tables and plots of experiments that fail
+    /// [default: target/validation]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -96,16 +98,18 @@ pub(crate) fn run(args: &ValidateArgs) -> Outcome {
         format!("cargo xtask validate{full} --seed {} --filter '{name}'", args.seed)
     };
     let result = with_threads(args.threads, || {
-        suite::run_suite(&chosen, &context, repeat, |record| {
+        suite::run_suite(&chosen, &context, circumstances(args), repeat, |record| {
             say(&report::line(record, width));
             say_all(&report::remarks(record));
         })
     })?;
+    suite::write_results(&result, &context.out)?;
     if let Some(path) = &args.json {
         suite::write_json(&result, path)?;
     }
     say("");
     say_all(&report::summary(&result));
+    say(&format!("report: {}", context.out.join("report.md").display()));
     Ok(result.passed())
 }
 
@@ -130,6 +134,25 @@ pub(crate) fn reference_render(args: &ReferenceRenderArgs) -> Outcome {
         made.mask.iter().filter(|&&judged| judged).count()
     ));
     Ok(true)
+}
+
+/// What the report says of this run.
+fn circumstances(args: &ValidateArgs) -> Circumstances {
+    let threads = args
+        .threads
+        .or_else(|| std::thread::available_parallelism().ok().map(usize::from))
+        .map_or("all threads".to_owned(), |count| format!("{count} threads"));
+    let processor = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
+        let line = text.lines().find(|line| line.starts_with("model name"))?;
+        Some(line.split_once(':')?.1.trim().to_owned())
+    });
+    let processor = processor.unwrap_or_else(|| std::env::consts::ARCH.to_owned());
+    Circumstances {
+        commit: commit(),
+        machine: format!("{processor}, {threads}, {}", std::env::consts::OS),
+        flags: std::env::args().skip(1).collect::<Vec<_>>().join(" "),
+        seed: args.seed,
+    }
 }
 
 fn say_all(lines: &[String]) {

@@ -1,5 +1,6 @@
 //! The questions, one module for each subject.
 
+pub mod calibration;
 pub mod energy;
 pub mod equal_time;
 pub mod fresnel;

@@ -10,6 +10,13 @@
 //!    (Schuirmann's equivalence test). Yes: [`Finding::Equivalent`]. No: [`Finding::Unresolved`],
 //!    which counts as failed: noise is no excuse.
 //!
+//! What is not fit to be judged is never equivalent: fewer than 32 batches, more than 64 contrasts,
+//! a contrast of fewer than 1000 independent contributions. These are counted as Kish (1965) does:
+//! contributions of unequal size w are worth (Σw)²/Σw² equal ones, and the relative variance of
+//! their sum is the inverse of that, so that (mean/s)² is their number (or more, where sampling is
+//! stratified). An interval within a margin of 0.5 % at 99 % needs 280 000 of them, within 1 %
+//! 70 000.
+//!
 //! The false-alarm probability, the chance to call an unbiased estimator different, is the level of
 //! question 1. The chance that its noise leaves it unresolved is, by Bonferroni and conditional on
 //! the observed s_k, Σ_k P(|T| > (margin − half width)/s_k): a matter of the budget.
@@ -22,6 +29,13 @@ use serde::{Deserialize, Serialize};
 use super::batches::{Batches, Summary};
 use super::multiple::holm;
 use super::student;
+
+/// More contrasts than these are no pre-registered choice.
+pub const MOST_CONTRASTS: usize = 64;
+/// With fewer batches, their spread is not known.
+pub const FEWEST_BATCHES: usize = 32;
+/// With fewer independent contributions, a batch's sum is not nearly normal.
+pub const FEWEST_CONTRIBUTIONS: f64 = 1000.0;
 
 /// The expectation of a contrast.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,6 +84,8 @@ pub struct Contrast {
     pub mean: f64,
     /// Standard error of the mean.
     pub standard_error: f64,
+    /// Independent contributions of equal size that would have this error; `None` without noise.
+    pub contributions: Option<f64>,
     /// (mean − expected)/standard error.
     pub z: f64,
     /// Confidence interval of the relative error.
@@ -97,6 +113,10 @@ pub struct Judgement {
     pub unresolved: f64,
     /// Chance of missing a difference of the size that was observed.
     pub miss: f64,
+    /// Independent batches.
+    pub batches: usize,
+    /// Why this may not be judged at all.
+    pub unfit: Vec<String>,
 }
 
 /// Compares batches with their targets.
@@ -114,9 +134,10 @@ pub fn judge(targets: &[Target], batches: &Batches, criterion: &Criterion) -> Ju
     }
     let worst_p = contrasts.iter().map(|c| c.adjusted_p).fold(1.0, f64::min);
     let within = |c: &Contrast| c.interval.iter().all(|end| end.abs() <= criterion.margin);
+    let unfit = unfit(&contrasts, batches.len());
     let finding = if worst_p <= criterion.level {
         Finding::Different
-    } else if !contrasts.is_empty() && contrasts.iter().all(within) {
+    } else if unfit.is_empty() && !contrasts.is_empty() && contrasts.iter().all(within) {
         Finding::Equivalent
     } else {
         Finding::Unresolved
@@ -135,8 +156,27 @@ pub fn judge(targets: &[Target], batches: &Batches, criterion: &Criterion) -> Ju
         false_alarm: criterion.level,
         unresolved: outside.min(1.0),
         miss: miss(&contrasts, criterion, freedom),
+        batches: batches.len(),
+        unfit,
         contrasts,
     }
+}
+
+/// What makes the comparison unfit to be judged.
+fn unfit(contrasts: &[Contrast], batches: usize) -> Vec<String> {
+    let mut reasons = Vec::new();
+    if batches < FEWEST_BATCHES {
+        reasons.push(format!("{batches} batches, fewer than {FEWEST_BATCHES}"));
+    }
+    if contrasts.len() > MOST_CONTRASTS {
+        reasons.push(format!("{} contrasts, more than {MOST_CONTRASTS}", contrasts.len()));
+    }
+    let poor = contrasts.iter().filter_map(|c| Some((&c.name, c.contributions?)));
+    reasons.extend(
+        poor.filter(|(_, count)| *count < FEWEST_CONTRIBUTIONS)
+            .map(|(name, count)| format!("\"{name}\" has only {count:.0} contributions")),
+    );
+    reasons
 }
 
 fn contrast(target: &Target, summary: Summary, critical: f64, freedom: f64) -> Contrast {
@@ -144,8 +184,11 @@ fn contrast(target: &Target, summary: Summary, critical: f64, freedom: f64) -> C
     let Target { expected, error, .. } = *target;
     let difference = mean - expected;
     let excess = (difference.abs() - error).max(0.0);
+    let size = mean.abs().max(expected.abs()) / standard_error;
+    let contributions = (size * size).is_finite().then_some(size * size);
     let p = match (excess, standard_error) {
         (e, _) if e.is_nan() => 0.0,
+        _ if contributions.is_some_and(|count| count < FEWEST_CONTRIBUTIONS) => 1.0,
         (0.0, _) => 1.0,
         (_, 0.0) => 0.0,
         _ => student::two_sided(excess / standard_error, freedom),
@@ -159,6 +202,7 @@ fn contrast(target: &Target, summary: Summary, critical: f64, freedom: f64) -> C
         expected_error: error,
         mean,
         standard_error,
+        contributions,
         z: if difference == 0.0 { 0.0 } else { difference / standard_error },
         interval: ends,
         p,
@@ -184,7 +228,8 @@ fn leaves_margin(contrast: &Contrast, criterion: &Criterion, critical: f64, free
 fn miss(contrasts: &[Contrast], criterion: &Criterion, freedom: f64) -> f64 {
     let level = criterion.level / contrasts.len().max(1) as f64;
     let critical = student::quantile(0.5 * level, freedom);
-    let strongest = contrasts.iter().map(|c| {
+    let fit = |c: &&Contrast| c.contributions.is_none_or(|n| n >= FEWEST_CONTRIBUTIONS);
+    let strongest = contrasts.iter().filter(fit).map(|c| {
         let excess = ((c.mean - c.expected).abs() - c.expected_error).max(0.0);
         if excess == 0.0 { 0.0 } else { excess / c.standard_error }
     });

@@ -68,3 +68,32 @@ fn values_without_noise_are_compared_to_the_error_of_the_target() {
     assert_eq!(judged(1e-8).unresolved, 0.0);
     assert_eq!(judged(1e-10).finding, Finding::Different, "no floor hides it");
 }
+
+#[test]
+fn what_rests_on_little_is_not_judged() {
+    let count = |batches: usize, contrasts: usize, n: usize| {
+        let mut rng = Stream::new(5, 0, 0);
+        let mut values = Batches::new();
+        for _ in 0..batches {
+            values.push((0..contrasts).map(|_| batch(&mut rng, n)).collect());
+        }
+        let target = |k| Target { name: format!("contrast {k}"), expected: 1.0, error: 0.0 };
+        let targets: Vec<Target> = (0..contrasts).map(target).collect();
+        let wide = Criterion { margin: 0.5, ..UNBIASED };
+        judge(&targets, &values, &wide)
+    };
+    assert_eq!(count(32, 2, 1000).finding, Finding::Equivalent);
+    assert_eq!(count(31, 2, 1000).finding, Finding::Unresolved);
+    assert_eq!(count(32, 65, 1000).finding, Finding::Unresolved);
+    // 32 batches of 10 exponential variates: 320 contributions.
+    let poor = count(32, 2, 10);
+    assert_eq!((poor.finding, poor.unfit.len()), (Finding::Unresolved, 2));
+}
+
+#[test]
+fn contributions_are_counted_as_kish_does() {
+    // The relative variance of a sum of n exponential variates is 1/n.
+    let (targets, batches) = simulate(9, 1, 1.0, 1000);
+    let count = judge(&targets, &batches, &UNBIASED).contrasts[0].contributions.unwrap();
+    assert!((count / 32_000.0 - 1.0).abs() < 0.8, "{count}");
+}

@@ -4,7 +4,7 @@
 //! x = ν/(ν + t²), which keeps its relative accuracy however small it is (`statrs`). Degrees of
 //! freedom need not be whole (Welch & Satterthwaite).
 
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{Continuous, ContinuousCDF, StudentsT};
 
 /// P(T > t) with `freedom` > 0 degrees of freedom.
 pub fn upper_tail(t: f64, freedom: f64) -> f64 {
@@ -26,24 +26,34 @@ pub fn two_sided(t: f64, freedom: f64) -> f64 {
 }
 
 /// The t that is exceeded with probability `tail`, 0 < `tail` < 1.
+///
+/// Newton's method on the logarithm of the tail, which is nearly straight; kept within a bracket.
 pub fn quantile(tail: f64, freedom: f64) -> f64 {
     if tail > 0.5 {
         return -quantile(1.0 - tail, freedom);
     }
-    let mut high = 1.0;
-    while upper_tail(high, freedom) > tail && high < 1e150 {
-        high *= 2.0;
+    let Ok(student) = StudentsT::new(0.0, 1.0, freedom) else { return f64::NAN };
+    let (mut low, mut high) = (0.0, 1.0);
+    while student.sf(high) > tail && high < 1e150 {
+        (low, high) = (high, 2.0 * high);
     }
-    let mut low = 0.0;
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if upper_tail(middle, freedom) > tail {
-            low = middle;
+    let mut t = 0.5 * (low + high);
+    for _ in 0..200 {
+        let above = student.sf(t);
+        if above > tail {
+            low = t;
         } else {
-            high = middle;
+            high = t;
+        }
+        let newton = t + (above / tail).ln() * above / student.pdf(t);
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        let moved = (next - t).abs();
+        t = next;
+        if moved <= 4.0 * f64::EPSILON * t {
+            break;
         }
     }
-    0.5 * (low + high)
+    t
 }
 
 #[cfg(test)]
