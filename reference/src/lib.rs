@@ -29,7 +29,7 @@ pub mod ballistic;
 pub mod beams;
 pub mod diffuse_sphere;
 pub mod diffusion;
-mod dwell;
+pub mod dwell;
 pub mod error;
 pub mod infinite_medium;
 pub mod interfaces;

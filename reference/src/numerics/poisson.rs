@@ -22,6 +22,31 @@ pub(crate) fn poisson(n: u32, x: f64) -> f64 {
     (-stirling_remainder(n) - deviance(n, x)).exp() / (TAU * n).sqrt()
 }
 
+/// The probability of at least n, for n of at least 1; also that n waiting times of mean 1 together
+/// take at most x (Gamma distribution).
+///
+/// A sum of positive terms up to the mean, and 1 less such a sum, of at most a half, above.
+pub(crate) fn at_least(n: u32, x: f64) -> f64 {
+    if x == f64::INFINITY {
+        return 1.0;
+    }
+    let below = x > f64::from(n);
+    let mut term = if below { poisson(n - 1, x) } else { poisson(n, x) };
+    let mut sum = term;
+    let mut k = f64::from(n);
+    while term > f64::EPSILON / 8.0 * sum {
+        if below {
+            k -= 1.0;
+            term *= k / x;
+        } else {
+            k += 1.0;
+            term *= x / k;
+        }
+        sum += term;
+    }
+    if below { 1.0 - sum } else { sum }
+}
+
 /// n·h(x/n) = x − n − n ln(x/n), without cancellation around x = n.
 fn deviance(n: f64, x: f64) -> f64 {
     let d = (x - n) / n;
@@ -93,5 +118,18 @@ mod tests {
         assert_eq!(poisson(3, 1e300), 0.0);
         assert_eq!(poisson(u32::MAX, 1.0), 0.0);
         assert!(poisson(1, 1e-300) > 0.0);
+    }
+
+    #[test]
+    fn the_tail_is_the_sum_of_the_probabilities() {
+        for n in [1, 2, 7, 30] {
+            for x in [1e-5, 0.5, 6.0, 7.0, 8.0, 29.0, 31.0, 300.0] {
+                let sum: f64 = (n..n + 600).map(|k| poisson(k, x)).sum();
+                assert!((at_least(n, x) / sum - 1.0).abs() < 1e-13, "n = {n}, x = {x}");
+            }
+        }
+        assert_eq!(at_least(3, 0.0), 0.0);
+        assert_eq!(at_least(3, 1e300), 1.0);
+        assert_eq!(at_least(3, f64::INFINITY), 1.0);
     }
 }

@@ -10,7 +10,7 @@ pub use fluence::{
     once_scattered_fluence_bins, once_scattered_fluence_hg, once_scattered_fluence_steady,
 };
 pub use pencil::{single_scatter_pencil_irradiance, single_scatter_pencil_irradiance_bins};
-pub(crate) use radiance::check_medium;
+pub(crate) use radiance::{RayToSource, check_medium};
 pub use radiance::{
     SingleScatter, SingleScatterBin, single_scatter_radiance, single_scatter_radiance_bins,
 };

@@ -98,11 +98,8 @@ pub fn single_scatter_radiance_bins(input: &SingleScatterBin) -> Result<f64> {
     }
     let q_start = (start - source_distance) + ray.q_at_front;
     require(q_start > 0.0, "alpha", alpha, "above 0 where the bin holds the wavefront")?;
-    // Where p turns from its peak to its tail: 4 g sin²(θ/2) = (1 − g)² or its mirror image.
-    let knee = (1.0 - g.abs()) / (2.0 * g.abs().sqrt());
-    let scales = [ray.offset, ray.offset * knee, ray.offset / knee];
-    let integral =
-        decaying_integral(q_start, end - start, sigma_t, &scales, |q, _| ray.kernel(g, q))?;
+    let kernel = |q: f64, _| ray.kernel(g, q);
+    let integral = decaying_integral(q_start, end - start, sigma_t, &ray.scales(g), kernel)?;
     let strength = energy * sigma_s * (-sigma_t * start).exp();
     finite_result("single_scatter_radiance_bins", strength * integral)
 }
@@ -118,15 +115,15 @@ pub(crate) fn check_medium(energy: f64, sigma_s: f64, sigma_t: f64, g: f64) -> R
 
 /// How the source lies relative to the camera ray.
 #[derive(Debug, Clone, Copy)]
-struct RayToSource {
+pub(crate) struct RayToSource {
     /// b: distance of the source from the line of the ray.
     offset: f64,
     /// q at the wavefront.
-    q_at_front: f64,
+    pub(crate) q_at_front: f64,
 }
 
 impl RayToSource {
-    fn new(source_distance: f64, alpha: f64) -> Result<Self> {
+    pub(crate) fn new(source_distance: f64, alpha: f64) -> Result<Self> {
         positive("source_distance", source_distance)?;
         require((0.0..=PI).contains(&alpha), "alpha", alpha, "between 0 and pi")?;
         Ok(Self {
@@ -136,10 +133,17 @@ impl RayToSource {
     }
 
     /// p(θ) / (2π (q² + b²)).
-    fn kernel(&self, g: f64, q: f64) -> f64 {
+    pub(crate) fn kernel(&self, g: f64, q: f64) -> f64 {
         let distance = q.hypot(self.offset);
         let deflection = Deflection::from_half_tangent(q, self.offset);
         henyey_greenstein(g, deflection) / (2.0 * PI) / distance / distance
+    }
+
+    /// The q at which the kernel changes its slope.
+    pub(crate) fn scales(&self, g: f64) -> [f64; 3] {
+        // Where p turns from its peak to its tail: 4 g sin²(θ/2) = (1 − g)² or its mirror image.
+        let knee = (1.0 - g.abs()) / (2.0 * g.abs().sqrt());
+        [self.offset, self.offset * knee, self.offset / knee]
     }
 }
 
