@@ -6,8 +6,8 @@
 //! files only need to be JSON with rows, and are reported as unknown.
 //!
 //! A row may leave out inputs that the table fixes, and say so behind the name of the quantity, as in
-//! "time R=1 L=4 c=1": what counts is the name up to the first space or parenthesis, and the
-//! solution's defaults are those values ([`Solution::defaults`]).
+//! "time R=1 L=4 c=1": if no quantity goes by the whole name, what counts is the name up to the first
+//! space or parenthesis, and the solution's defaults are those values ([`Solution::defaults`]).
 //!
 //! The error of a row is relative to its value. A value of 0 stands for darkness, before a front
 //! or outside a kernel, which is a matter of cases and not of rounding: it must be met exactly.
@@ -125,8 +125,9 @@ fn compare(solution: &Solution, rows: &[Row]) -> Comparison {
 }
 
 fn row_error(solution: &Solution, index: usize, row: &Row) -> RowError {
-    let name = row.quantity.as_deref().and_then(|name| name.split([' ', '(']).next());
-    let found = match solution.quantity(name) {
+    let name = row.quantity.as_deref();
+    let short = name.and_then(|name| name.split([' ', '(']).next());
+    let found = match solution.quantity(name).or_else(|| solution.quantity(short)) {
         None => Err(format!("{} has no such quantity", solution.name)),
         Some(quantity) => (quantity.evaluate)(&solution.complete(quantity, &row.inputs))
             .map_err(|error| explain(&error)),
@@ -255,6 +256,14 @@ mod tests {
         assert!(error.contains("line 2 column 11"), "{error}");
         let error = explain(&report("{\"rows\": [\n{\"in\": {}}]}").unwrap_err());
         assert!(error.contains("missing field `value`") && error.contains("line 2"), "{error}");
+    }
+
+    #[test]
+    fn a_name_of_several_words_is_a_name_first() {
+        let text = r#"{"name": "dwell_flight_fraction", "rows": [{"in":
+            {"scattering_rate": 1.0, "mean_dwell": 1.0, "scatterings": 0, "time": 0.0},
+            "quantity": "n-th order in flight", "value": 1.0}]}"#;
+        assert_eq!(report(text).unwrap().verdict(), Verdict::Passed);
     }
 
     #[test]
