@@ -68,7 +68,7 @@ fn gather(criterion: &mut Criterion) {
             .sum()
     };
     let by_hierarchy = || -> u64 {
-        let map = BeamMap::new(&beams, RADIUS, 16.0 * RADIUS);
+        let map = BeamMap::new(kernel, &beams, 16.0 * RADIUS);
         rays.iter()
             .map(|(_, id, ray)| map.query(kernel, *id, ray, |b, m| evaluate(b, m, ray)).accepted)
             .sum()

@@ -13,7 +13,8 @@
 //! where beams are as long as light can be seen; from there on they grow geometrically.
 //!
 //! The box of a piece from a to b with unit direction d is that of its ends, grown along axis i by
-//! R √(1 − d_i²): the radius acts across the beam only.
+//! R √(1 − d_i²): the radius acts across the beam only. Where a beam ends, kernels with round ends
+//! need a ball around the end as well.
 
 use glam::DVec3;
 use tpb_accel::{Aabb, Bvh, Quality};
@@ -64,8 +65,9 @@ impl Pairs {
 }
 
 impl<'a, const C: usize> BeamMap<'a, C> {
-    /// For kernels of `radius`, with pieces of about `piece_length` (may be infinite).
-    pub fn new(beams: &'a [Beam<C>], radius: f64, piece_length: f64) -> Self {
+    /// For queries with `kernel`, with pieces of about `piece_length` \[m\] (may be infinite).
+    pub fn new<K: RayBeamKernel>(kernel: K, beams: &'a [Beam<C>], piece_length: f64) -> Self {
+        let radius = kernel.radius();
         let mut pieces = Vec::with_capacity(beams.len());
         let mut boxes = Vec::with_capacity(beams.len());
         for (index, beam) in beams.iter().enumerate() {
@@ -73,9 +75,16 @@ impl<'a, const C: usize> BeamMap<'a, C> {
                 let ends = [from, to].map(|s| beam.origin + s * beam.direction);
                 let d = beam.direction;
                 let across = (DVec3::ONE - d * d).max(DVec3::ZERO).map(f64::sqrt) * radius;
-                let Aabb { min, max } = Aabb::around(ends);
+                let Aabb { mut min, mut max } = Aabb::around(ends);
+                (min, max) = (min - across, max + across);
+                if K::ROUND_ENDS {
+                    let is_end = [piece.start == f32::NEG_INFINITY, piece.end == f32::INFINITY];
+                    for (end, _) in ends.into_iter().zip(is_end).filter(|(_, is_end)| *is_end) {
+                        (min, max) = (min.min(end - radius), max.max(end + radius));
+                    }
+                }
                 pieces.push(piece);
-                boxes.push(Aabb { min: min - across, max: max + across });
+                boxes.push(Aabb { min, max });
             });
         }
         let bvh = Bvh::build(&boxes, Quality::FastBuild);

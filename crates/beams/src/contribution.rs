@@ -5,6 +5,8 @@ use tpb_optics::Spectrum;
 
 use crate::Temporal;
 use crate::beam::Attenuation;
+use crate::kernel3d::Swept;
+use crate::sweep::MOST_BREAKS;
 
 /// One ray-beam pair's share of the image.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +40,8 @@ pub enum Spread<const C: usize> {
         /// Distances along the ray at start and end \[m\].
         along_ray: [f64; 2],
     },
+    /// As a swept sphere.
+    Swept(Swept<C>),
 }
 
 impl<const C: usize> Contribution<C> {
@@ -68,6 +72,20 @@ impl<const C: usize> Contribution<C> {
                 };
                 let density: &(dyn Fn(f64) -> Spectrum<C> + Sync) = &density;
                 let profile = TemporalProfile::General { start, end, breaks: &[], density };
+                strip.deposit(pixel, unwarp_opl, &Arrival::Profile(profile), energy);
+                return;
+            }
+            (Temporal::Exact, Spread::Swept(swept)) => {
+                let ([first, last], kinks) = swept.span_and_breaks();
+                let metres = (end - start) / (last - first);
+                let density = |opl: f64| swept.at(first + (opl - start) / metres);
+                let density: &(dyn Fn(f64) -> Spectrum<C> + Sync) = &density;
+                let mut breaks = [0.0; MOST_BREAKS];
+                let breaks = &mut breaks[..kinks.len()];
+                for (opl, tau) in breaks.iter_mut().zip(kinks) {
+                    *opl = start + metres * (tau - first);
+                }
+                let profile = TemporalProfile::General { start, end, breaks, density };
                 strip.deposit(pixel, unwarp_opl, &Arrival::Profile(profile), energy);
                 return;
             }

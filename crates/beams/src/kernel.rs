@@ -7,13 +7,20 @@ use crate::contribution::Contribution;
 
 /// A blur kernel for pairs of a beam and a camera ray; a pure function of the pair.
 ///
-/// Both kernels accept a pair only if some point of the ray (within its segment) has its foot on
-/// the beam (within *its* segment) and lies within the kernel's radius of that foot. That point is
-/// the *reporting point*: a beam may be stored in pieces, and the piece that holds the reporting
-/// point's foot is the one that counts the pair.
+/// A kernel accepts a pair only if some point of the ray (within its segment) lies within the
+/// radius of some point of the beam (within *its* segment). For one such pair of points, the beam's
+/// is the *reporting point*: a beam may be stored in pieces, and the piece that holds the reporting
+/// point is the one that counts the pair. It is the foot of the ray's point, unless the kernel has
+/// [`RayBeamKernel::ROUND_ENDS`] and it is an end of the beam.
 pub trait RayBeamKernel: Copy + Sync {
     /// The geometry of an accepted pair.
     type Meeting;
+
+    /// Whether the kernel reaches beyond the ends of a beam, by its radius in all directions.
+    const ROUND_ENDS: bool;
+
+    /// How far it reaches \[m\].
+    fn radius(self) -> f64;
 
     /// The geometry, if the kernel joins beam and ray.
     fn meet(
@@ -26,7 +33,7 @@ pub trait RayBeamKernel: Copy + Sync {
         ray_length: f64,
     ) -> Option<Self::Meeting>;
 
-    /// Foot of the reporting point: distance along the beam \[m\].
+    /// The reporting point: distance along the beam \[m\].
     fn reporting_point(meeting: &Self::Meeting) -> f64;
 
     /// The energy and its arrival.

@@ -48,6 +48,12 @@ pub struct Closest {
 impl RayBeamKernel for Kernel1d {
     type Meeting = Closest;
 
+    const ROUND_ENDS: bool = false;
+
+    fn radius(self) -> f64 {
+        self.radius
+    }
+
     #[inline]
     fn meet(
         self,

@@ -55,11 +55,18 @@ pub struct Inside {
     pub kappa: f64,
 }
 
-static RULE: LazyLock<GaussLegendre> =
+/// For what has no closed form.
+pub(crate) static RULE: LazyLock<GaussLegendre> =
     LazyLock::new(|| GaussLegendre::new(16.try_into().expect("16 is not 0")));
 
 impl RayBeamKernel for Kernel2d {
     type Meeting = Inside;
+
+    const ROUND_ENDS: bool = false;
+
+    fn radius(self) -> f64 {
+        self.radius
+    }
 
     #[inline]
     fn meet(

@@ -7,8 +7,8 @@
 //!    [`beam::Beam`] in each span of a scattering medium and a [`beam::SurfacePhoton`] at each
 //!    diffuse surface.
 //! 2. [`tiles`], [`beam_map`] and [`surface_map`] sort what they left.
-//! 3. The camera's rays gather it: in media by a ray-beam kernel ([`kernel1d`], [`kernel2d`]), on
-//!    surfaces by a disc. Emission seen and direct light on surfaces are computed without blur.
+//! 3. The camera's rays gather it: in media by a ray-beam kernel ([`kernel1d`], [`kernel2d`],
+//!    [`kernel3d`]), on surfaces by a disc. Emission seen and direct light on surfaces are computed without blur.
 //!
 //! **What is biased by what.** Light last scattered in a medium is blurred by the beams' radius;
 //! light last scattered on a diffuse surface, except straight from an emitter, by the disc's. Where
@@ -40,10 +40,12 @@ mod defaults;
 pub mod kernel;
 pub mod kernel1d;
 pub mod kernel2d;
+pub mod kernel3d;
 mod method;
 mod options;
 pub mod photons;
 pub mod surface_map;
+pub mod sweep;
 pub mod tiles;
 
 pub use method::PhotonBeams;

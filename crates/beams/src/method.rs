@@ -11,6 +11,7 @@ use crate::camera::Camera;
 use crate::kernel::RayBeamKernel;
 use crate::kernel1d::Kernel1d;
 use crate::kernel2d::Kernel2d;
+use crate::kernel3d::Kernel3d;
 use crate::photons::PhotonTracer;
 use crate::surface_map::SurfaceMap;
 use crate::tiles::Tiles;
@@ -49,15 +50,16 @@ impl<'a> PhotonBeams<'a> {
         &self,
         id: PassId,
         film: &mut TransientFilm<C>,
-        (kernel, radius): (K, f64),
+        kernel: K,
         beams: &[Beam<C>],
         photons: &SurfaceMap<C>,
     ) -> Pairs {
         let Self { scene, plan, integrator, settings } = self;
         let integrator = *integrator;
+        let radius = kernel.radius();
         let tiles = &Tiles::new(scene, beams, radius);
         let turned = !(plan.refracting.is_empty() && plan.mirrors.is_empty());
-        let hierarchy = turned.then(|| BeamMap::new(beams, radius, settings.piece_radii * radius));
+        let hierarchy = turned.then(|| BeamMap::new(kernel, beams, settings.piece_radii * radius));
         let hierarchy = hierarchy.as_ref();
         let camera =
             Camera { scene, plan, integrator, settings, tiles, hierarchy, photons, kernel };
@@ -96,12 +98,9 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
         let photons = SurfaceMap::new(traced.surface, surface_radius);
         let beams = &traced.beams;
         let pairs = match settings.kernel {
-            KernelChoice::OneD => {
-                self.gather(id, film, (Kernel1d { radius }, radius), beams, &photons)
-            }
-            KernelChoice::TwoD => {
-                self.gather(id, film, (Kernel2d { radius }, radius), beams, &photons)
-            }
+            KernelChoice::OneD => self.gather(id, film, Kernel1d { radius }, beams, &photons),
+            KernelChoice::TwoD => self.gather(id, film, Kernel2d { radius }, beams, &photons),
+            KernelChoice::ThreeD => self.gather(id, film, Kernel3d { radius }, beams, &photons),
         };
         let samples = settings.gather_samples.max(settings.surface_samples);
         let counts = Counts {

@@ -16,7 +16,7 @@ pub enum BeamLength {
     Short,
 }
 
-/// How the 2D kernel spreads a pair's energy over its arrival interval.
+/// How the 2D and 3D kernels spread a pair's energy over its arrival interval.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Temporal {
@@ -36,6 +36,9 @@ pub enum KernelChoice {
     /// [`crate::kernel2d`].
     #[serde(rename = "2d")]
     TwoD,
+    /// [`crate::kernel3d`].
+    #[serde(rename = "3d")]
+    ThreeD,
 }
 
 /// Options of the method; what is left out is chosen from scene and film ([`Settings::new`]).
@@ -46,7 +49,7 @@ pub struct BeamOptions {
     pub kernel: Option<KernelChoice>,
     /// Where beams end; by default long.
     pub length: Option<BeamLength>,
-    /// Spread in time of the 2D kernel; by default exact.
+    /// Spread in time of the 2D and 3D kernels; by default exact.
     pub temporal: Option<Temporal>,
     /// Radius of beams in the first pass \[m\].
     pub radius: Option<f64>,
@@ -110,7 +113,7 @@ pub struct Settings {
     pub kernel: KernelChoice,
     /// Where beams end.
     pub length: BeamLength,
-    /// Spread in time of the 2D kernel.
+    /// Spread in time of the 2D and 3D kernels.
     pub temporal: Temporal,
     /// Radius of beams in the first pass \[m\].
     pub radius: f64,

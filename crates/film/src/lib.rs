@@ -33,4 +33,5 @@ pub use layout::{Layout, TimeAxis};
 pub use ledger::Ledger;
 pub use picture::{ArrivalColours, ArrivalTime, PictureOptions};
 pub use pulse::{Pulse, PulseReport};
+pub use quadrature::integrate;
 pub use strip::Strip;

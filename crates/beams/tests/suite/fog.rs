@@ -59,6 +59,19 @@ fn expected_2d(x: f64) -> f64 {
     strength(x) / (RADIUS * RADIUS) * ((w2 / B).asinh() - (w1 / B).asinh())
 }
 
+/// The ball's mean of sources, with y the path length since the onset:
+/// ½ [y − (H² − R²)/(2H) ln(1 + 2Hy/((H − R)(H + R − y)))].
+fn expected_3d(x: f64) -> f64 {
+    let y = (x - Z.hypot(B) + RADIUS).min(2.0 * RADIUS);
+    if y <= 0.0 {
+        return 0.0;
+    }
+    let h = (x - Z).hypot(B);
+    let logarithm = (2.0 * h * y / ((h - RADIUS) * (h + RADIUS - y))).ln_1p();
+    let integral = 0.5 * (y - (h * h - RADIUS * RADIUS) / (2.0 * h) * logarithm);
+    1.5 * strength(x) * integral / RADIUS.powi(3)
+}
+
 fn bins(density: impl Fn(f64) -> f64) -> Vec<f64> {
     let n = 400;
     let dx = WIDTH / f64::from(n);
@@ -84,10 +97,11 @@ fn scene() -> Scene {
 fn single_scattering_in_fog_is_the_expected_blur() {
     let scene = scene();
     let integrator = IntegratorSpec { max_depth: Some(2), min_depth: 2, ..Default::default() };
-    for kernel in [KernelChoice::OneD, KernelChoice::TwoD] {
+    for kernel in [KernelChoice::OneD, KernelChoice::TwoD, KernelChoice::ThreeD] {
         let expected = match kernel {
             KernelChoice::OneD => bins(expected_1d),
             KernelChoice::TwoD => bins(expected_2d),
+            KernelChoice::ThreeD => bins(expected_3d),
         };
         for length in [BeamLength::Long, BeamLength::Short] {
             let options = BeamOptions {

@@ -6,6 +6,7 @@ use tpb_beams::beam_map::BeamMap;
 use tpb_beams::kernel::RayBeamKernel;
 use tpb_beams::kernel1d::Kernel1d;
 use tpb_beams::kernel2d::Kernel2d;
+use tpb_beams::kernel3d::Kernel3d;
 use tpb_beams::tiles::Tiles;
 use tpb_optics::{Coefficients, Phase, Spectrum, Stream, warp};
 use tpb_scene::{MediumId, Scene};
@@ -67,11 +68,17 @@ fn rays(scale: f64, count: u32, rng: &mut Stream) -> Vec<CameraRay<1>> {
         .collect()
 }
 
+fn joins<K: RayBeamKernel>(kernel: K, beam: &Beam<1>, ray: &CameraRay<1>) -> bool {
+    let of_beam = (beam.origin, beam.direction, beam.length);
+    let of_ray = (ray.origin, ray.direction, ray.length);
+    kernel.meet(of_beam.0, of_beam.1, of_beam.2, of_ray.0, of_ray.1, of_ray.2).is_some()
+}
+
 fn check<K: RayBeamKernel>(kernel: K, radius: f64, scale: f64, pieces: f64, seed: u64) -> usize {
     let mut rng = Stream::new(seed, 0, 0);
     let beams = beams(scale, 600, &mut rng);
     let rays = rays(scale, 400, &mut rng);
-    let map = BeamMap::new(&beams, radius, pieces * radius);
+    let map = BeamMap::new(kernel, &beams, pieces * radius);
     let mut pairs = 0;
     for ray in &rays {
         let mut found = Vec::new();
@@ -79,7 +86,7 @@ fn check<K: RayBeamKernel>(kernel: K, radius: f64, scale: f64, pieces: f64, seed
         found.sort_unstable();
         let all = beams.iter().enumerate();
         let brute: Vec<usize> = all
-            .filter(|(_, b)| b.medium == MediumId(1) && kernel.evaluate(b, ray).is_some())
+            .filter(|(_, b)| b.medium == MediumId(1) && joins(kernel, b, ray))
             .map(|(index, _)| index)
             .collect();
         assert_eq!(found, brute, "scale {scale}, pieces {pieces}");
@@ -96,7 +103,9 @@ fn the_hierarchy_finds_exactly_the_pairs_of_brute_force() {
                 let radius = relative * scale;
                 let one = check(Kernel1d { radius }, radius, scale, pieces, seed as u64);
                 let two = check(Kernel2d { radius }, radius, scale, pieces, seed as u64);
+                let three = check(Kernel3d { radius }, radius, scale, pieces, seed as u64);
                 assert!(one > 50 && two >= one, "pairs to compare: {one}, {two}");
+                assert!(three >= two && (three > two || relative < 0.01), "{two}, {three}");
             }
         }
     }
@@ -134,7 +143,7 @@ fn check_tiles<K: RayBeamKernel>(kernel: K, radius: f64, scale: f64, fov: f64, s
         tiles.query(kernel, MediumId(1), (x, y), &ray, |beam, _| found.push(beam.opl as usize));
         let all = beams.iter().enumerate();
         let brute: Vec<usize> = all
-            .filter(|(_, b)| b.medium == MediumId(1) && kernel.evaluate(b, &ray).is_some())
+            .filter(|(_, b)| b.medium == MediumId(1) && joins(kernel, b, &ray))
             .map(|(index, _)| index)
             .collect();
         assert_eq!(found, brute, "scale {scale}, field of view {fov}");
@@ -151,7 +160,9 @@ fn the_tiles_find_exactly_the_pairs_of_brute_force() {
                 let radius = relative * scale;
                 let one = check_tiles(Kernel1d { radius }, radius, scale, fov, seed as u64);
                 let two = check_tiles(Kernel2d { radius }, radius, scale, fov, seed as u64);
+                let three = check_tiles(Kernel3d { radius }, radius, scale, fov, seed as u64);
                 assert!(two >= one && (one > 0 || fov < 1.0), "pairs to compare: {one}, {two}");
+                assert!(three >= two && (three > two || fov < 1.0), "{two}, {three}");
             }
         }
     }

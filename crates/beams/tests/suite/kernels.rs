@@ -10,10 +10,15 @@ use tpb_beams::kernel2d::Kernel2d;
 use tpb_optics::{Coefficients, Phase, Spectrum};
 use tpb_scene::MediumId;
 
-const RADIUS: f64 = 0.1;
+pub(crate) const RADIUS: f64 = 0.1;
 const SIGMA_T: [f64; 3] = [0.7, 0.2, 1.9];
 
-fn beam(origin: DVec3, direction: DVec3, length: f64, attenuation: Attenuation<3>) -> Beam<3> {
+pub(crate) fn beam(
+    origin: DVec3,
+    direction: DVec3,
+    length: f64,
+    attenuation: Attenuation<3>,
+) -> Beam<3> {
     Beam {
         origin,
         direction: direction.normalize(),
@@ -26,7 +31,7 @@ fn beam(origin: DVec3, direction: DVec3, length: f64, attenuation: Attenuation<3
     }
 }
 
-fn ray(origin: DVec3, direction: DVec3, length: f64) -> CameraRay<3> {
+pub(crate) fn ray(origin: DVec3, direction: DVec3, length: f64) -> CameraRay<3> {
     CameraRay {
         origin,
         direction: direction.normalize(),
@@ -43,7 +48,7 @@ fn ray(origin: DVec3, direction: DVec3, length: f64) -> CameraRay<3> {
 }
 
 /// Named pairs: every relation of the two, every clip.
-fn pairs(attenuation: Attenuation<3>) -> Vec<(&'static str, Beam<3>, CameraRay<3>)> {
+pub(crate) fn pairs(attenuation: Attenuation<3>) -> Vec<(&'static str, Beam<3>, CameraRay<3>)> {
     let along_z = |length| beam(DVec3::ZERO, DVec3::Z, length, attenuation);
     let at = DVec3::new;
     vec![
@@ -72,7 +77,7 @@ fn pairs(attenuation: Attenuation<3>) -> Vec<(&'static str, Beam<3>, CameraRay<3
 }
 
 /// Attenuation at one point, written out.
-fn left(attenuation: Attenuation<3>, s_b: f64, s_r: f64, c: usize) -> f64 {
+pub(crate) fn left(attenuation: Attenuation<3>, s_b: f64, s_r: f64, c: usize) -> f64 {
     let along_ray = (-SIGMA_T[c] * s_r).exp();
     let along_beam = (-SIGMA_T[c] * s_b).exp();
     match attenuation {
@@ -131,6 +136,7 @@ fn moments_of(contribution: &Contribution<3>) -> [[f64; 3]; 3] {
             Spread::Mixture { attenuation, along_beam: [b0, b1], along_ray: [r0, r1], .. } => {
                 left(attenuation, b0 + (b1 - b0) * x, r0 + (r1 - r0) * x, c)
             }
+            Spread::Swept(_) => panic!("not of the 2D kernel"),
         };
         let nodes = || (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n));
         let whole: f64 = nodes().map(density).sum();
@@ -143,7 +149,8 @@ fn moments_of(contribution: &Contribution<3>) -> [[f64; 3]; 3] {
     moments
 }
 
-const SAMPLED: Attenuation<3> = Attenuation::Sampled { mixture: Spectrum([0.2, 0.3, 0.5]) };
+pub(crate) const SAMPLED: Attenuation<3> =
+    Attenuation::Sampled { mixture: Spectrum([0.2, 0.3, 0.5]) };
 
 #[test]
 fn the_2d_kernel_is_the_marched_cylinder_in_energy_and_time() {

@@ -164,7 +164,7 @@ fn depths_part_the_light_and_limits_hold() {
     let deepest = 5;
     let whole = IntegratorSpec { max_depth: Some(deepest), rr_depth: 9, ..Default::default() };
     let scene = everything(whole);
-    for kernel in [KernelChoice::OneD, KernelChoice::TwoD] {
+    for kernel in [KernelChoice::OneD, KernelChoice::TwoD, KernelChoice::ThreeD] {
         let options = BeamOptions {
             kernel: Some(kernel),
             photons_per_pass: Some(4000),
@@ -193,9 +193,9 @@ fn depths_part_the_light_and_limits_hold() {
 fn even_and_exact_spreading_have_the_same_total() {
     let integrator = IntegratorSpec { max_depth: Some(5), ..Default::default() };
     let scene = everything(integrator);
-    let with = |temporal, length| {
+    let with = |kernel, temporal, length| {
         let options = BeamOptions {
-            kernel: Some(KernelChoice::TwoD),
+            kernel: Some(kernel),
             temporal: Some(temporal),
             length: Some(length),
             photons_per_pass: Some(2000),
@@ -204,12 +204,15 @@ fn even_and_exact_spreading_have_the_same_total() {
         };
         render(&scene, integrator, &options, 1).0
     };
-    for length in [BeamLength::Long, BeamLength::Short] {
-        let (exact, even) = (with(Temporal::Exact, length), with(Temporal::Even, length));
-        for (a, b) in exact.steady.iter().zip(&even.steady) {
-            assert!((a / b - 1.0).abs() < 1e-8, "{a} {b}");
+    for kernel in [KernelChoice::TwoD, KernelChoice::ThreeD] {
+        for length in [BeamLength::Long, BeamLength::Short] {
+            let exact = with(kernel, Temporal::Exact, length);
+            let even = with(kernel, Temporal::Even, length);
+            for (a, b) in exact.steady.iter().zip(&even.steady) {
+                assert!((a / b - 1.0).abs() < 1e-8, "{a} {b}");
+            }
+            assert!(exact.transient != even.transient, "but not the same distribution");
         }
-        assert!(exact.transient != even.transient, "but not the same distribution");
     }
 }
 
