@@ -161,7 +161,7 @@ pub(crate) struct BeamArgs {
     #[arg(long, value_name = "LENGTH")]
     pub(crate) beam_length: Option<BeamLengthArg>,
 
-    /// How the 2D kernel spreads energy over time
+    /// How the 2D and 3D kernels spread energy over time
     #[arg(long, value_name = "SPREAD")]
     pub(crate) temporal: Option<TemporalArg>,
 
@@ -237,6 +237,9 @@ pub(crate) enum KernelArg {
     /// A disc across the beam
     #[value(name = "2d")]
     TwoD,
+    /// A sphere swept along the beam
+    #[value(name = "3d")]
+    ThreeD,
 }
 
 /// Where beams end.
@@ -248,7 +251,7 @@ pub(crate) enum BeamLengthArg {
     Short,
 }
 
-/// How the 2D kernel spreads energy over time.
+/// How the 2D and 3D kernels spread energy over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TemporalArg {
     /// As transmittance does

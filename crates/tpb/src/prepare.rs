@@ -132,6 +132,7 @@ fn beam_options(args: &BeamArgs) -> BeamOptions {
         kernel: args.kernel.map(|kernel| match kernel {
             KernelArg::OneD => KernelChoice::OneD,
             KernelArg::TwoD => KernelChoice::TwoD,
+            KernelArg::ThreeD => KernelChoice::ThreeD,
         }),
         length: args.beam_length.map(|length| match length {
             BeamLengthArg::Long => BeamLength::Long,
