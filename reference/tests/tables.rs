@@ -25,6 +25,7 @@ fn every_known_table_passes() {
         "expected_blur_3d_bins",
         "infinite_medium_energy",
         "once_scattered_shell_energy_bins",
+        "plane_pulse_cells",
         "single_scatter_pencil_irradiance_bins",
     ];
     assert_eq!(passed, solutions().count() - without_table.len());

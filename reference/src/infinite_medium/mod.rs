@@ -3,15 +3,26 @@
 mod energy;
 mod moments;
 mod paasschens;
+mod plane_pulse;
+mod point_pulse;
+mod saddle;
 
 pub use energy::{Alive, AliveOfOrder, energy_alive, energy_of_order};
 pub use moments::{
     Moment, mean_depth, mean_fourth_power_of_distance, mean_square_depth, mean_square_distance,
 };
 pub use paasschens::{Paasschens, VALIDITY_3D, paasschens_2d, paasschens_3d, paasschens_4d};
+pub use plane_pulse::{
+    PlanePulse, PlanePulseCell, PlanePulseOrder, plane_pulse_cells,
+    plane_pulse_cells_with_ballistic, plane_pulse_fluence, plane_pulse_fluence_by_order,
+};
+pub use point_pulse::{
+    PointPulse, PointPulseBin, PointPulseOrder, point_pulse_fluence, point_pulse_fluence_bins,
+    point_pulse_fluence_by_order,
+};
 
 use crate::registry::Solution;
-use crate::registry::ToleranceClass::ClosedForm;
+use crate::registry::ToleranceClass::{AllOrderBins, ClosedForm, Quadrature};
 use crate::registry::solution;
 
 pub(crate) static SOLUTIONS: &[Solution] = &[
@@ -29,6 +40,22 @@ pub(crate) static SOLUTIONS: &[Solution] = &[
         "z2" => mean_square_depth
     )
     .describe("moments of the distance (r) and, for a collimated start, of the depth (z)", "m^n"),
+    solution!("point_pulse_fluence", Quadrature, point_pulse_fluence)
+        .describe("fluence rate of the scattered light of a point pulse, all orders", "1/mfp^3"),
+    solution!("point_pulse_fluence_bins", AllOrderBins, point_pulse_fluence_bins)
+        .describe("the same within a bin of time", "1/mfp^2"),
+    solution!("point_pulse_fluence_by_order", Quadrature, point_pulse_fluence_by_order)
+        .describe("the same of one order of scattering, at albedo 1", "1/mfp^3"),
+    solution!("plane_pulse_fluence", Quadrature, "collided" => plane_pulse_fluence)
+        .describe("fluence rate of the scattered light of a plane pulse, all orders", "1/mfp"),
+    solution!("plane_pulse_fluence_by_order", Quadrature, plane_pulse_fluence_by_order)
+        .describe("the same of one order of scattering, at albedo 1", "1/mfp"),
+    solution!(
+        "plane_pulse_cells", Quadrature,
+        "collided" => plane_pulse_cells,
+        "total" => plane_pulse_cells_with_ballistic
+    )
+    .describe("fluence rate of a plane pulse, mean over a cell", "1/mfp"),
     solution!("paasschens_2d_4d", ClosedForm, "2D" => paasschens_2d, "4D" => paasschens_4d)
         .describe("density of scattered light of a point pulse in 2 and 4 dimensions", "1/mfp^d"),
     solution!("paasschens_3d", ClosedForm, "paasschens_closed" => paasschens_3d)

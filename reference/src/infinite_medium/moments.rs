@@ -41,29 +41,29 @@ pub struct Moment {
 /// ⟨r²⟩ \[m²\].
 pub fn mean_square_distance(input: &Moment) -> Result<f64> {
     let (rates, t) = Rates::new(input)?;
-    result(2.0 * t * t * rates.difference([0.0, 0.0, rates.first]))
+    result(2.0 * t * t * difference([0.0, 0.0, rates.first]))
 }
 
 /// ⟨r⁴⟩ \[m⁴\].
 pub fn mean_fourth_power_of_distance(input: &Moment) -> Result<f64> {
     let (rates, t) = Rates::new(input)?;
     let (first, second) = (rates.first, rates.second);
-    let same = rates.difference([0.0, 0.0, 0.0, first, first]);
-    let other = rates.difference([0.0, 0.0, first, first, second]);
+    let same = difference([0.0, 0.0, 0.0, first, first]);
+    let other = difference([0.0, 0.0, first, first, second]);
     result(120.0 * t.powi(4) * (same / 9.0 + other * (4.0 / 45.0)))
 }
 
 /// ⟨z⟩ \[m\] for light that starts along z.
 pub fn mean_depth(input: &Moment) -> Result<f64> {
     let (rates, t) = Rates::new(input)?;
-    result(t * rates.difference([0.0, rates.first]))
+    result(t * difference([0.0, rates.first]))
 }
 
 /// ⟨z²⟩ \[m²\] for light that starts along z.
 pub fn mean_square_depth(input: &Moment) -> Result<f64> {
     let (rates, t) = Rates::new(input)?;
-    let isotropic = rates.difference([0.0, 0.0, rates.first]);
-    let forward = rates.difference([0.0, rates.first, rates.second]);
+    let isotropic = difference([0.0, 0.0, rates.first]);
+    let forward = difference([0.0, rates.first, rates.second]);
     result(t * t * (2.0 * isotropic + 4.0 * forward) / 3.0)
 }
 
@@ -87,19 +87,19 @@ impl Rates {
         let depth = finite_result("infinite_medium_moments", sigma_s * time)?;
         Ok((Self { first: depth * (1.0 - g), second: depth * (1.0 - g) * (1.0 + g) }, time))
     }
+}
 
-    /// The divided difference of x ↦ e^(−x) up to its sign, at points of at least 0.
-    fn difference<const N: usize>(self, points: [f64; N]) -> f64 {
-        let largest = points.into_iter().fold(0.0, f64::max);
-        // 2^−halvings times the largest point is at most 1/2.
-        let halvings = if largest > 0.5 { (2.0 * largest).log2().ceil() } else { 0.0 };
-        let scale = (-halvings).exp2();
-        let mut power = exponential(points.map(|point| -point * scale), scale);
-        for _ in 0..halvings as u32 {
-            power = square(&power);
-        }
-        power[0][N - 1]
+/// The divided difference of x ↦ e^(−x) up to its sign, at points of at least 0.
+fn difference<const N: usize>(points: [f64; N]) -> f64 {
+    let largest = points.into_iter().fold(0.0, f64::max);
+    // 2^−halvings times the largest point is at most 1/2.
+    let halvings = if largest > 0.5 { (2.0 * largest).log2().ceil() } else { 0.0 };
+    let scale = (-halvings).exp2();
+    let mut power = exponential(points.map(|point| -point * scale), scale);
+    for _ in 0..halvings as u32 {
+        power = square(&power);
     }
+    power[0][N - 1]
 }
 
 /// The exponential of the bidiagonal matrix of a diagonal within [−1/2, 0] and `above` it.
@@ -138,7 +138,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const MOMENTS: [(fn(&Moment) -> Result<f64>, i32); 4] = [
+    type Solution = fn(&Moment) -> Result<f64>;
+
+    const MOMENTS: [(Solution, i32); 4] = [
         (mean_square_distance, 2),
         (mean_fourth_power_of_distance, 4),
         (mean_depth, 1),
