@@ -98,7 +98,24 @@ pub enum AssembleError {
         /// The boundary.
         shape: String,
     },
-    /// Two surfaces in the same place, one of which lets light pass: which is met first, nobody
+    /// The camera or an emitter stands exactly on an opaque surface, on neither side of it.
+    #[error("{place}: it stands on '{shape}', on neither side of it")]
+    OnSurface {
+        /// What stands there.
+        place: String,
+        /// The surface.
+        shape: String,
+    },
+    /// The camera stands at a point emitter in a medium that scatters: it would see infinite
+    /// radiance.
+    #[error(
+        "the camera stands at emitter '{emitter}' in a medium that scatters: infinite radiance"
+    )]
+    AtEmitter {
+        /// The emitter.
+        emitter: String,
+    },
+    /// Two surfaces in the same place, and light can tell them apart: which is met first, nobody
     /// can say.
     #[error("'{shape}' lies in the same place as '{other}'")]
     Coincident {
@@ -125,7 +142,9 @@ impl AssembleError {
         match self {
             Self::Disagreement { first, .. } => first,
             Self::MediumIndex { medium, .. } => medium,
+            Self::AtEmitter { emitter } => emitter,
             Self::OnBoundary { shape, .. }
+            | Self::OnSurface { shape, .. }
             | Self::Coincident { shape, .. }
             | Self::NullBetweenUnequalIndices { shape, .. } => shape,
         }
@@ -141,7 +160,7 @@ impl Scene {
         let mut scene = lay_out(parts, &media_eta);
         check_null_boundaries(&scene, &media_eta)?;
         let probe = Probe::new(&scene, &media_eta);
-        probe.check_boundaries()?;
+        probe.check_surfaces()?;
         let eye = probe.camera_region()?;
         let regions = (0..scene.emitters.len())
             .map(|e| probe.emitter_region(e, stated.get(e).copied().flatten()))
@@ -233,6 +252,24 @@ fn lay_out(parts: SceneParts, media_eta: &[f64]) -> Scene {
         background,
         shape_of,
         surfaces,
+    }
+}
+
+/// Refuses a camera that looks around from a point emitter in fog: light that is scattered once
+/// diverges there. (Scenes that are assembled for something else than their camera may do so.)
+pub(crate) fn check_camera(scene: &Scene) -> Result<(), AssembleError> {
+    let scatters = |region: Region| {
+        region.medium.is_some_and(|medium| scene.medium(medium).coefficients.scatters())
+    };
+    let at_camera = |e: &&Emitter| match e.kind {
+        EmitterKind::Point { position, .. } | EmitterKind::Spot { position, .. } => {
+            position == scene.sensor.position && scatters(e.region)
+        }
+        EmitterKind::Area { .. } | EmitterKind::Laser { .. } => false,
+    };
+    match scene.emitters.iter().find(at_camera) {
+        Some(emitter) => Err(AssembleError::AtEmitter { emitter: emitter.name.clone() }),
+        None => Ok(()),
     }
 }
 

@@ -10,7 +10,8 @@ use serde::Serialize;
 use tpb_optics::{Coefficients, Rgb};
 
 use crate::{
-    Bsdf, EmitterKind, IntegratorSpec, MethodName, PixelFormat, Reflector, Scene, TimeSpec,
+    Bsdf, EmitterKind, IntegratorSpec, MethodName, PixelFormat, Reflector, Region, Scene, Shape,
+    TimeSpec,
 };
 
 /// What a render of a scene needs.
@@ -330,7 +331,10 @@ fn emitters(scene: &Scene, wanted: impl Fn(&EmitterKind) -> bool) -> Vec<String>
     found.map(|e| e.name.clone()).collect()
 }
 
-/// Reflectances and albedos that take nothing from some channel.
+/// Reflectances and albedos that take nothing from some channel, and light that starts within the
+/// denser side of glass: what is reflected there totally, may be so for ever. (Light that enters
+/// from outside leaves again, for almost all its directions: flight between reflections keeps the
+/// measure of places and directions, so that what came in by a way gets back to it.)
 fn endless(scene: &Scene) -> Vec<String> {
     let mut reasons = Vec::new();
     for shape in &scene.shapes {
@@ -350,7 +354,28 @@ fn endless(scene: &Scene) -> Vec<String> {
                 .push(format!("medium '{}' absorbs nothing of a channel (albedo 1)", medium.name));
         }
     }
+    reasons.extend(scene.shapes.iter().filter_map(|shape| trap(scene, shape)));
     reasons
+}
+
+/// Whether the camera or an emitter stands where this shape is the way out of something denser that
+/// takes nothing of some channel.
+fn trap(scene: &Scene, shape: &Shape) -> Option<String> {
+    let Bsdf::Dielectric(glass) = shape.bsdf else { return None };
+    if glass.interior_eta == glass.exterior_eta || glass.reflectance.max_channel() < 1.0 {
+        return None;
+    }
+    let denser = glass.interior_eta.max(glass.exterior_eta);
+    let takes = |region: Region| {
+        let medium = region.medium.map(|id| scene.medium(id).coefficients);
+        medium.is_some_and(|c| (0..3).all(|i| c.sigma_t[i] > c.sigma_s[i]))
+    };
+    let inside = |region: Region| region.eta == denser && !takes(region);
+    let lamps = scene.emitters.iter().filter(|e| !e.kind.power().is_zero());
+    let lamp = lamps.into_iter().find(|e| inside(e.region)).map(|e| format!("'{}'", e.name));
+    let who = lamp.or_else(|| inside(scene.sensor.region).then(|| "the camera".to_owned()))?;
+    let name = &shape.name;
+    Some(format!("shape '{name}' may totally reflect light for ever: {who} is on its denser side"))
 }
 
 /// A laser whose axis the camera looks along (either way) needs the 2D kernel.

@@ -4,14 +4,23 @@
 //! found by probe rays: each flies straight on to the first boundary that names media and reads
 //! the side that it hit; rays that an opaque surface stops do not vote; no vote means background.
 //! The same probes, from points on every boundary, find boundaries that contradict each other, and
-//! boundaries that lie in the same place as another surface.
+//! surfaces that lie in the same place as another.
+//!
+//! **The same place.** Which of two surfaces in one place is met first, rounding decides, and a ray
+//! that leaves one meets the other at once. With a boundary among them that is refused. Two opaque
+//! surfaces are refused only where light can get to see the difference: both facing a side that is
+//! *open*, or back to back with both sides open. A side is open if some probe from there meets
+//! nothing, or something that sends light back. So a solid may stand on a floor: its inside is
+//! closed. Likewise a camera, point, spot or laser on a surface is on neither side of it, and is
+//! refused.
 
 use std::f64::consts::PI;
 
 use glam::DVec3;
 use tpb_optics::{Stream, warp};
 
-use crate::{AssembleError, Bsdf, EmitterKind, MediumId, Region, Scene, Shape, Vertex};
+use crate::geometry::SurfacePoint;
+use crate::{AssembleError, Bsdf, EmitterKind, MediumId, Reflector, Region, Scene, Shape, Vertex};
 
 const PROBES_PER_PLACE: usize = 64;
 const PROBES_PER_BOUNDARY: usize = 32;
@@ -126,34 +135,30 @@ impl<'a> Probe<'a> {
     fn around(&self, place: &str, position: DVec3) -> Result<Votes, AssembleError> {
         let mut all = Votes::default();
         for i in 0..PROBES_PER_PLACE {
-            self.check_clear(place, position, spread(i))?;
             self.merge(place, &mut all, self.votes(position, None, spread(i)))?;
         }
         Ok(all)
     }
 
-    /// Refuses a place on a boundary.
-    fn check_clear(
-        &self,
-        place: &str,
-        position: DVec3,
-        direction: DVec3,
-    ) -> Result<(), AssembleError> {
-        let before = position - self.near * direction;
-        let start = Vertex { position: before, primitive: None, region: Region::VACUUM };
-        let Some((_, p)) = self.scene.nearest(&start, direction, 2.0 * self.near) else {
-            return Ok(());
-        };
-        let Shape { name, bsdf, boundary, .. } = self.scene.shape(p);
-        if boundary.is_none() && !matches!(bsdf, Bsdf::Dielectric(_)) {
-            return Ok(());
+    /// Refuses a place on a surface.
+    fn check_clear(&self, place: &str, position: DVec3) -> Result<(), AssembleError> {
+        for direction in (0..PROBES_PER_PLACE).map(spread) {
+            let before = position - self.near * direction;
+            let start = Vertex { position: before, primitive: None, region: Region::VACUUM };
+            if let Some((_, p)) = self.scene.nearest(&start, direction, 2.0 * self.near) {
+                let (place, shape) = (place.to_owned(), self.scene.shape(p).name.clone());
+                return Err(match self.scene.shape(p).bsdf {
+                    Bsdf::Opaque { .. } => AssembleError::OnSurface { place, shape },
+                    Bsdf::Null | Bsdf::Dielectric(_) => AssembleError::OnBoundary { place, shape },
+                });
+            }
         }
-        Err(AssembleError::OnBoundary { place: place.to_owned(), shape: name.clone() })
+        Ok(())
     }
 
-    /// Refuses a boundary with another surface in the same place, looked for at a few points.
+    /// Refuses a shape with another surface in the same place, looked for at a few points.
     fn check_alone(&self, shape: usize) -> Result<(), AssembleError> {
-        let Shape { name, primitives, .. } = &self.scene.shapes[shape];
+        let Shape { name, primitives, bsdf, .. } = &self.scene.shapes[shape];
         let mut rng = Stream::new(1, 0, shape as u64);
         for _ in 0..PROBES_PER_BOUNDARY {
             let own = primitives.start + rng.index(primitives.len()) as u32;
@@ -166,20 +171,61 @@ impl<'a> Probe<'a> {
                     region: Region::VACUUM,
                 };
                 let met = self.scene.nearest(&behind, direction, 2.0 * self.near);
-                if let Some((_, other)) = met.filter(|&(_, other)| !primitives.contains(&other)) {
-                    let other = self.scene.shape(other).name.clone();
-                    return Err(AssembleError::Coincident { shape: name.clone(), other });
+                let Some((_, met)) = met.filter(|&(_, other)| !primitives.contains(&other)) else {
+                    continue;
+                };
+                let other = self.scene.shape(met);
+                let matters = match (bsdf, other.bsdf) {
+                    (Bsdf::Opaque { .. }, Bsdf::Opaque { .. }) => self.tells_apart(&p, met),
+                    // The boundary says so itself.
+                    (Bsdf::Opaque { .. }, _) => false,
+                    _ => true,
+                };
+                if matters {
+                    let (shape, other) = (name.clone(), other.name.clone());
+                    return Err(AssembleError::Coincident { shape, other });
                 }
             }
         }
         Ok(())
     }
 
+    /// Whether light can tell which of two opaque surfaces in the place `p` it meets.
+    fn tells_apart(&self, p: &SurfacePoint, other: u32) -> bool {
+        let facing = self.scene.primitives[other as usize].normal(p.position).dot(p.normal);
+        self.is_open(p, p.normal) && (facing > 0.0 || self.is_open(p, -p.normal))
+    }
+
+    /// Whether light can come to a surface from the side of `up`.
+    fn is_open(&self, p: &SurfacePoint, up: DVec3) -> bool {
+        let position = p.position + 2.0 * self.near * up;
+        let start = Vertex { position, primitive: None, region: Region::VACUUM };
+        let frame = tpb_optics::Frame::from_z(up);
+        let mut rng = Stream::new(2, 0, 0);
+        (0..PROBES_PER_BOUNDARY).any(|_| {
+            let local = warp::cosine_hemisphere(rng.uniform(), rng.uniform());
+            let direction = frame.to_world(local);
+            let Some((t, met)) = self.scene.nearest(&start, direction, f64::INFINITY) else {
+                return true;
+            };
+            let normal = self.scene.primitives[met as usize].normal(position + t * direction);
+            let shape = self.scene.shape(met);
+            let front = direction.dot(normal) < 0.0;
+            match shape.bsdf.reflector(front) {
+                None => true,
+                Some(Reflector::Black) => front && shape.emitter.is_some(),
+                Some(Reflector::Diffuse(rho) | Reflector::Mirror(rho)) => !rho.is_zero(),
+            }
+        })
+    }
+
     pub(crate) fn camera_region(&self) -> Result<Region, AssembleError> {
         let sensor = &self.scene.sensor;
+        let place = "the camera's surroundings";
+        self.check_clear(place, sensor.position)?;
         match sensor.stated_medium {
             Some(medium) => Ok(self.stated(sensor.position, medium)),
-            None => Ok(self.region(&self.around("the camera's surroundings", sensor.position)?)),
+            None => Ok(self.region(&self.around(place, sensor.position)?)),
         }
     }
 
@@ -190,8 +236,11 @@ impl<'a> Probe<'a> {
     ) -> Result<Region, AssembleError> {
         let emitter = &self.scene.emitters[index];
         let place = format!("the surroundings of emitter '{}'", emitter.name);
-        if let (Some(position), Some(medium)) = (emitter.kind.position(), stated) {
-            return Ok(self.stated(position, medium));
+        if let Some(position) = emitter.kind.position() {
+            self.check_clear(&place, position)?;
+            if let Some(medium) = stated {
+                return Ok(self.stated(position, medium));
+            }
         }
         let votes = match emitter.kind {
             EmitterKind::Point { position, .. } | EmitterKind::Spot { position, .. } => {
@@ -234,13 +283,14 @@ impl<'a> Probe<'a> {
         Ok(all)
     }
 
-    /// Every boundary's two sides must agree with the boundaries that they face.
-    pub(crate) fn check_boundaries(&self) -> Result<(), AssembleError> {
+    /// No surface may lie in the place of another, and every boundary's two sides must agree with
+    /// the boundaries that they face.
+    pub(crate) fn check_surfaces(&self) -> Result<(), AssembleError> {
         for (index, shape) in self.scene.shapes.iter().enumerate() {
+            self.check_alone(index)?;
             if matches!(shape.bsdf, Bsdf::Opaque { .. }) {
                 continue;
             }
-            self.check_alone(index)?;
             let mut etas = [None; 2];
             for (front, side) in [(true, "in front of"), (false, "behind")] {
                 let place = format!("the region {side} '{}'", shape.name);

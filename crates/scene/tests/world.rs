@@ -1,6 +1,6 @@
 //! Which medium is where, and flights through it.
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 use tpb_optics::{Coefficients, Phase, Rgb};
 use tpb_scene::geometry::{Outline, Planar, Sphere};
 use tpb_scene::{
@@ -159,6 +159,52 @@ fn a_boundary_in_the_same_place_as_a_wall_is_refused() {
         panic!("which is first?")
     };
     assert!(matches!(error, AssembleError::Coincident { .. }), "{error}");
+}
+
+/// A plate with its normal along ±z, turned about an axis of no symmetry.
+fn turned(name: &str, front: Reflector, z: f64, up: f64) -> ShapePart {
+    let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
+    let (centre, u, v) = (DVec3::new(0.1, 0.2, z), DVec3::X, up * DVec3::Y);
+    let plate = Planar::new(turn * centre, turn * u, turn * v, Outline::Parallelogram);
+    let bsdf = Bsdf::Opaque { front, back: Reflector::Black };
+    let primitives = vec![Primitive::Planar(plate)];
+    ShapePart { name: name.into(), primitives, bsdf, boundary: None, radiance: None }
+}
+
+/// Regression: half of a lamp's light was lost where it lay in the plane of a wall.
+#[test]
+fn opaque_surfaces_in_the_same_place_are_refused_where_light_tells_them_apart() {
+    let eye = DVec3::new(0.0, 0.0, 9.0);
+    let white = Reflector::Diffuse(Rgb::splat(0.5));
+    let wall = || turned("wall", white, 1.0, 1.0);
+    let lamp =
+        |z| ShapePart { radiance: Some(Rgb::ONE), ..turned("lamp", Reflector::Black, z, 1.0) };
+    let Err(error) = assemble(eye, eye, vec![wall(), lamp(1.0)]) else { panic!("one plane") };
+    assert!(matches!(error, AssembleError::Coincident { .. }), "{error}");
+    assert!(assemble(eye, eye, vec![wall(), lamp(1.0 + 1e-6)]).is_ok());
+    // Back to back in free space.
+    let back = turned("back", white, 1.0, -1.0);
+    let Err(error) = assemble(eye, eye, vec![wall(), back.clone()]) else { panic!("two backs") };
+    assert!(matches!(error, AssembleError::Coincident { .. }), "{error}");
+    // Nothing sees the underside of a solid that stands on a floor, and so on nothing else.
+    let lid = turned("lid", white, 1.0 + 1e-3, 1.0);
+    let underside = turned("underside", white, 1.0, -1.0);
+    assert!(assemble(eye, eye, vec![wall(), underside, lid]).is_ok());
+}
+
+/// Regression: rounding decided which part of the light of a point on a wall was lost.
+#[test]
+fn a_place_on_an_opaque_surface_is_on_neither_side_of_it() {
+    let (away, white) = (DVec3::new(0.0, 0.0, 9.0), Reflector::Diffuse(Rgb::splat(0.5)));
+    let wall = turned("wall", white, 1.0, 1.0);
+    let Primitive::Planar(plate) = &wall.primitives[0] else { panic!("a plate") };
+    let on = plate.parallelogram().map_or(away, |corners| 0.3 * corners[0] + 0.7 * corners[2]);
+    for (eye, lamp) in [(on, away), (away, on)] {
+        let Err(error) = assemble(eye, lamp, vec![wall.clone()]) else { panic!("on the wall") };
+        assert!(matches!(error, AssembleError::OnSurface { .. }), "{error}");
+        let above = 1e-6 * plate.normal;
+        assert!(assemble(eye + above, lamp + above, vec![wall.clone()]).is_ok());
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::materials::Medium;
 use super::transform::{Transform, Vector};
-use super::values::{Colour, ConeAngle, NonNegative, Positive, grey};
+use super::values::{Colour, ConeAngle, Light, NonNegative, Positive, grey};
 
 /// A lamp that stands by itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -39,9 +39,9 @@ pub struct Point {
     /// Steps whose image of the origin is where it stands; instead of `position`.
     #[serde(default)]
     pub to_world: Option<Transform>,
-    /// Radiant intensity \[W/sr\], at least 0.
+    /// Radiant intensity \[W/sr\]: 0, or from 1e-100 to 1e100.
     #[serde(default = "unit")]
-    pub intensity: Colour<NonNegative>,
+    pub intensity: Colour<Light>,
     /// The medium around it; found from the shapes around it unless given.
     #[serde(default)]
     pub medium: Option<Medium>,
@@ -54,9 +54,9 @@ pub struct Spot {
     /// Steps that place the lamp: rotations and translations, or a `look_at`.
     #[serde(default)]
     pub to_world: Transform,
-    /// Radiant intensity on the axis \[W/sr\], at least 0.
+    /// Radiant intensity on the axis \[W/sr\]: 0, or from 1e-100 to 1e100.
     #[serde(default = "unit")]
-    pub intensity: Colour<NonNegative>,
+    pub intensity: Colour<Light>,
     /// Angle from the axis beyond which it is dark, in degrees.
     #[serde(default = "twenty_degrees")]
     pub cutoff_angle: ConeAngle,
@@ -79,9 +79,9 @@ pub struct Laser {
     pub to_world: Transform,
     /// Radius of the beam \[m\], greater than 0.
     pub radius: Positive,
-    /// Total power \[W\], at least 0.
+    /// Total power \[W\]: 0, or from 1e-100 to 1e100.
     #[serde(default = "unit")]
-    pub power: Colour<NonNegative>,
+    pub power: Colour<Light>,
     /// The medium around it; found from the shapes around it unless given.
     #[serde(default)]
     pub medium: Option<Medium>,
@@ -91,12 +91,13 @@ pub struct Laser {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Area {
-    /// Radiance in all directions \[W m^-2 sr^-1\], at least 0.
+    /// Radiance in all directions \[W m^-2 sr^-1\]: 0, or from 1e-100 to
+    /// 1e100.
     #[serde(default = "unit")]
-    pub radiance: Colour<NonNegative>,
+    pub radiance: Colour<Light>,
 }
 
-const fn unit() -> Colour<NonNegative> {
+const fn unit() -> Colour<Light> {
     grey(1.0)
 }
 

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Reference;
-use super::values::{Colour, Fraction, Ior, MeanCosine, NonNegative, Positive, grey};
+use super::values::{Colour, Fraction, Index, Ior, MeanCosine, NonNegative, grey};
 
 /// What a surface does to light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -107,7 +107,7 @@ pub enum Medium {
 }
 
 /// `homogeneous`: coefficients in 1/m, given as `sigma_t` and `albedo` (Mitsuba's way) or as
-/// `sigma_s` and `sigma_a` (extension).
+/// `sigma_s` and `sigma_a` (extension). What comes out is 0, or from 1e-100 to 1e100 per metre.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Homogeneous {
@@ -129,9 +129,9 @@ pub struct Homogeneous {
     /// Phase function; isotropic unless given.
     #[serde(default)]
     pub phase: Option<Phase>,
-    /// Refractive index inside the medium, greater than 0 (extension); default 1.
+    /// Refractive index inside the medium, 1e-6 to 1e6 (extension); default 1.
     #[serde(default)]
-    pub eta: Option<Positive>,
+    pub eta: Option<Index>,
 }
 
 /// The distribution of scattered directions.

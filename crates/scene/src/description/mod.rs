@@ -41,7 +41,8 @@ pub use sensors::{
 pub use shapes::{Attributes, Cube, Cylinder, Disk, Mesh, Rectangle, Shape, Sphere};
 pub use transform::{LookAt, Rotate, Scale, Step, Transform, Vector};
 pub use values::{
-    Colour, ConeAngle, FieldOfView, Fraction, Ior, MATERIALS, MeanCosine, NonNegative, Positive,
+    Colour, ConeAngle, FieldOfView, Fraction, Index, Ior, Light, MATERIALS, MeanCosine,
+    NonNegative, Positive,
 };
 
 /// `{"type": "ref", "id": ...}`: the object of that id, which may stand later in the file.

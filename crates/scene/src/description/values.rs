@@ -66,6 +66,17 @@ bounded_number!(
     NonNegative, "a number that is at least 0", |v| v >= 0.0, "minimum": 0
 );
 bounded_number!(
+    /// An amount of light: 0, or a number from 1e-100 to 1e100, so that neither the image nor its
+    /// variance leaves the range of f64 at any distance.
+    Light, "0, or a number from 1e-100 to 1e100", |v| v == 0.0 || (1e-100..=1e100).contains(&v),
+    "minimum": 0, "maximum": 1e100
+);
+bounded_number!(
+    /// A refractive index.
+    Index, "a refractive index from 1e-6 to 1e6", |v| (1e-6..=1e6).contains(&v),
+    "minimum": 1e-6, "maximum": 1e6
+);
+bounded_number!(
     /// A number from 0 to 1.
     Fraction, "a number from 0 to 1", |v| (0.0..=1.0).contains(&v), "minimum": 0, "maximum": 1
 );
@@ -256,7 +267,7 @@ impl<T: JsonSchema> JsonSchema for Colour<T> {
     }
 }
 
-/// A refractive index as a number greater than 0, or the name of a material.
+/// A refractive index as a number from 1e-6 to 1e6, or the name of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ior(f64);
 
@@ -317,11 +328,11 @@ impl Visitor<'_> for IorVisitor {
     type Value = Ior;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a refractive index greater than 0, or the name of a material")
+        f.write_str("a refractive index from 1e-6 to 1e6, or the name of a material")
     }
 
     fn visit_f64<E: de::Error>(self, value: f64) -> Result<Ior, E> {
-        if value > 0.0 && value.is_finite() {
+        if (1e-6..=1e6).contains(&value) {
             return Ok(Ior(value));
         }
         Err(E::invalid_value(de::Unexpected::Float(value), &self))
@@ -359,8 +370,8 @@ impl JsonSchema for Ior {
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         let names = MATERIALS.map(|(name, _)| name);
         json_schema!({
-            "description": "Refractive index: a number greater than 0, or the name of a material.",
-            "anyOf": [{ "type": "number", "exclusiveMinimum": 0 }, { "enum": names }]
+            "description": "Refractive index: a number from 1e-6 to 1e6, or the name of a material.",
+            "anyOf": [{ "type": "number", "minimum": 1e-6, "maximum": 1e6 }, { "enum": names }]
         })
     }
 }

@@ -28,6 +28,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::Scene;
+use crate::assemble::check_camera;
 use build::Builder;
 use dictionary::Dictionary;
 use source::Source;
@@ -100,7 +101,9 @@ fn build_scene(root: &Node, directory: &Path) -> Result<Scene, Trouble> {
     let dictionary = Dictionary::read(root)?;
     let mut builder = Builder::new(&dictionary, directory);
     let parts = builder.parts()?;
-    Scene::assemble(parts).map_err(|error| builder.blame(&error))
+    let scene = Scene::assemble(parts).map_err(|error| builder.blame(&error))?;
+    check_camera(&scene).map_err(|error| builder.blame(&error))?;
+    Ok(scene)
 }
 
 fn blame(overrides: &[Override], index: usize) -> Option<String> {

@@ -97,3 +97,23 @@ fn light_that_may_never_end_is_found() {
     let [mirror] = &plan(&shipped("mirror-caustic"), 9).endless[..] else { panic!("no glass") };
     assert!(mirror.contains("shape 'mirror_shape'"), "{mirror}");
 }
+
+/// Regression: total reflection in glass was not seen as endless.
+#[test]
+fn light_that_glass_may_trap_for_ever_is_found() {
+    let with_glass = |lamp: &str, more: &str, fog: &str| {
+        let glass = format!(
+            r#"glass={{"type": "cube", "to_world": [{{"scale": 0.2}}, {{"translate": [0, 0.3, 0.5]}}],
+                "bsdf": {{"type": "dielectric", "int_ior": 1.5, "ext_ior": 1 {more}}}}}"#
+        );
+        let lamp = format!(r#"bulb={{"type": "point", "position": {lamp}}}"#);
+        plan(&cornell(&[&glass, &lamp, fog]), 9).endless
+    };
+    let with_fog = |fog| with_glass("[0, 0.35, 0.5]", "", fog);
+    let with_glass = |lamp, more| with_glass(lamp, more, "fog.sigma_t=0");
+    let [trap] = &with_glass("[0, 0.35, 0.5]", "")[..] else { panic!("it is inside") };
+    assert!(trap.contains("shape 'glass'") && trap.contains("'bulb'"), "{trap}");
+    assert!(with_fog("fog.albedo=0.8").is_empty(), "fog takes of it");
+    assert!(with_glass("[0, 0.8, 0.5]", "").is_empty(), "what enters leaves again");
+    assert!(with_glass("[0, 0.35, 0.5]", r#", "specular_reflectance": 0.9"#).is_empty());
+}

@@ -193,7 +193,7 @@ fn meshes_stand_beside_the_scene_and_a_broken_one_names_its_face() {
     fs::write(directory.path().join("good.obj"), mesh).expect("written");
     fs::write(directory.path().join("bad.obj"), mesh.replace("3 4", "3 9")).expect("written");
     let path = directory.path().join("scene.json");
-    let value = r#"{"type": "obj", "filename": "good.obj", "to_world": [{"scale": 2}]}"#;
+    let value = r#"{"type": "obj", "filename": "good.obj", "to_world": [{"scale": 2}, {"translate": [0, 0, 7]}]}"#;
     fs::write(&path, scene_with("mesh", value)).expect("written");
     match load_scene(&path, &[]) {
         Ok(loaded) => {
@@ -330,9 +330,20 @@ fn a_file_that_is_missing_or_no_text_is_an_error() {
 fn an_emitter_may_state_its_medium() {
     let scene = scene(
         "wet",
-        r#"{"type": "point", "medium": {"type": "homogeneous", "sigma_t": 2.0, "eta": 1.3}}"#,
+        r#"{"type": "point", "position": [0, 9, 0],
+            "medium": {"type": "homogeneous", "sigma_t": 2.0, "eta": 1.3}}"#,
     );
     let region = scene.emitters.iter().find(|e| e.name == "wet").expect("it is there").region;
     let sigma_t = scene.medium(region.medium.expect("a medium")).coefficients.sigma_t;
     assert_eq!((sigma_t, region.eta), (Rgb::splat(2.0), 1.3));
+}
+
+/// Regression: the image was infinite, and came out as whatever was drawn.
+#[test]
+fn the_camera_may_stand_at_a_lamp_in_vacuum_but_not_in_fog() {
+    let lamp = r#"{"type": "point", "position": [0, 0, 0]}"#;
+    assert_eq!(scene("bulb", lamp).emitters.len(), 2);
+    let fog = lamp.replace('}', r#", "medium": {"type": "homogeneous"}}"#);
+    let message = error_of(&scene_with("bulb", &fog)).to_string();
+    assert!(message.contains("emitter 'bulb'") && message.contains("move one"), "{message}");
 }

@@ -130,7 +130,7 @@ impl<'a> Builder<'a> {
                 Some(phase) => self.phase(phase, node.get_or_self("phase"))?,
                 None => Phase::Isotropic,
             },
-            eta: medium.eta.map(words::Positive::get),
+            eta: medium.eta.map(words::Index::get),
         })
     }
 
@@ -166,6 +166,12 @@ impl<'a> Builder<'a> {
     }
 }
 
+/// Coefficients must not exceed this \[1/m\], so that optical depths and their squares stay finite.
+const LARGEST_SIGMA: f64 = 1e100;
+
+/// Nor be below this \[1/m\], so that mean free paths and the lengths of beams do.
+const SMALLEST_SIGMA: f64 = 1e-100;
+
 /// sigma_t and albedo, or sigma_s and sigma_a; with the scale.
 fn coefficients(medium: &Homogeneous, node: &Node) -> Outcome<Coefficients<3>> {
     let (sigma_s, sigma_t) = match (medium.sigma_s, medium.sigma_a) {
@@ -186,8 +192,14 @@ fn coefficients(medium: &Homogeneous, node: &Node) -> Outcome<Coefficients<3>> {
     };
     let scale = medium.scale.get();
     let coefficients = Coefficients { sigma_s: sigma_s * scale, sigma_t: sigma_t * scale };
-    if !coefficients.sigma_t.is_finite() {
-        return Err(Trouble::new("the coefficients of this medium are too large").at(node));
+    let sound = |sigma: &f64| *sigma == 0.0 || (SMALLEST_SIGMA..=LARGEST_SIGMA).contains(sigma);
+    let Coefficients { sigma_s, sigma_t } = coefficients;
+    if !sigma_s.0.iter().chain(&sigma_t.0).all(sound) {
+        let message = format!(
+            "a coefficient of this medium is neither 0 nor between {SMALLEST_SIGMA:e} and \
+             {LARGEST_SIGMA:e} per metre"
+        );
+        return Err(Trouble::new(message).at(node).hint("lengths are in metres"));
     }
     Ok(coefficients)
 }

@@ -91,12 +91,14 @@ impl<'a> Builder<'a> {
             AssembleError::MediumIndex { .. } => {
                 "`int_ior` is the index opposite to the normal, `ext_ior` the one on its side"
             }
-            AssembleError::OnBoundary { .. } => {
-                "move it to one side; a point in space may also name its `medium`"
+            AssembleError::OnBoundary { .. } | AssembleError::OnSurface { .. } => {
+                "move it to one side, by more than 1e-9 of the size of the scene"
             }
+            AssembleError::AtEmitter { .. } => "move one of them",
             AssembleError::Coincident { .. } => {
-                "move or shrink one of them; a medium that walls close in needs no boundary of its \
-                 own: make it the `background`"
+                "move or shrink one of them; a sheet with two sides is one shape with a `twosided` \
+                 BSDF; a medium that walls close in needs no boundary of its own: make it the \
+                 `background`"
             }
             AssembleError::NullBetweenUnequalIndices { .. } => {
                 "light bends where the index changes: use a `dielectric` there"

@@ -10,11 +10,12 @@ use crate::load::trouble::{Outcome, Trouble};
 use crate::load::{mesh, names, transform};
 use crate::{Bsdf, MediumBoundary, MediumId, Primitive, Reflector, ShapePart};
 
-/// Coordinates and radii must not exceed this \[m\], so that their fourth powers stay finite.
-const LARGEST_LENGTH: f64 = 1e15;
+/// Coordinates and radii must not exceed this \[m\], so that their fourth powers stay finite, also
+/// with the largest powers and coefficients. (A light-year is 1e16 m.)
+const LARGEST_LENGTH: f64 = 1e20;
 
 /// Nor be below this \[m\].
-const SMALLEST_LENGTH: f64 = 1e-15;
+const SMALLEST_LENGTH: f64 = 1e-20;
 
 impl<'a> Builder<'a> {
     pub(super) fn shape(&mut self, shape: &words::Shape, member: &'a Member) -> Outcome<ShapePart> {
