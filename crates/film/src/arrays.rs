@@ -27,6 +27,9 @@ pub enum Quantity {
     RadianceAtUpperEdges,
 }
 
+/// Cells add up to the steady image so well, relatively: rounding to f32 is 6e-8.
+const LARGEST_LOSS: f64 = 1e-6;
+
 /// A developed film.
 #[derive(Clone, PartialEq)]
 pub struct Arrays {
@@ -70,6 +73,35 @@ impl Arrays {
     pub fn pixel(&self, pixel: usize) -> &[f32] {
         let size = self.bins * self.channels;
         &self.transient[pixel * size..(pixel + 1) * size]
+    }
+
+    /// What the cells, 32-bit floats, could not hold, and what to do about it; `None` if they hold
+    /// what the film holds. Cells above 3e38 are infinite, below 1e-38 they lose digits. The latter
+    /// is asked only if the cells are to add up to the steady image, which a pulse may prevent, and
+    /// told only if it matters to the whole image.
+    pub fn out_of_range(&self, adds_up: bool) -> Option<String> {
+        let all = self.transient.iter().chain(self.variance.iter().flatten());
+        if let Some(count) = Some(all.filter(|cell| cell.is_infinite()).count()).filter(|&n| n > 0)
+        {
+            return Some(format!(
+                "{count} values of the time-resolved arrays exceed 3e38, the largest 32-bit float: \
+                 lower all powers by the same factor (the image is proportional to them)"
+            ));
+        }
+        if !adds_up || self.bins == 0 || self.quantity != Quantity::BinEnergy {
+            return None;
+        }
+        let inside: f64 = self.transient.iter().map(|&cell| f64::from(cell)).sum();
+        let outside: f64 = self.before.iter().chain(&self.after).sum();
+        let steady: f64 = self.steady.iter().sum();
+        let lost = (inside + outside - steady).abs();
+        (lost > LARGEST_LOSS * steady).then(|| {
+            format!(
+                "the time-resolved arrays lost {:.1e} of the light: it is below 1e-38, the smallest \
+                 32-bit float: raise all powers by the same factor (the image is proportional to them)",
+                lost / steady
+            )
+        })
     }
 
     /// Keeps only some bins, at least one; what the others hold goes to before and after. Used to

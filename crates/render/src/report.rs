@@ -32,6 +32,9 @@ pub struct Report {
     pub ledger_closure: Option<f64>,
     /// Contributions that were not finite and were kept out; 0 in a sound render.
     pub non_finite: u64,
+    /// What the cells of the arrays, 32-bit floats, could not hold; `None` if they held everything.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub out_of_range: Option<String>,
     /// What the pulse did to the arrays.
     pub pulse: PulseReport,
     /// The most memory that the process held \[bytes\]; `None` where the system does not tell.
@@ -163,6 +166,7 @@ impl Report {
             ledger_closure,
             run,
             non_finite,
+            out_of_range: arrays.out_of_range(options.pulse == Pulse::Delta),
             pulse,
             peak_memory_bytes: crate::peak_memory(),
             warnings: Vec::new(),
@@ -173,9 +177,11 @@ impl Report {
         report
     }
 
-    /// Whether nothing was kept out and the ledger closes.
+    /// Whether nothing was kept out, the ledger closes, and the arrays hold what the film holds.
     pub fn is_sound(&self) -> bool {
-        self.non_finite == 0 && self.ledger_closure.is_none_or(|c| c.abs() <= LEDGER_TOLERANCE)
+        self.non_finite == 0
+            && self.ledger_closure.is_none_or(|c| c.abs() <= LEDGER_TOLERANCE)
+            && self.out_of_range.is_none()
     }
 
     fn find_warnings(&self) -> Vec<String> {
@@ -192,6 +198,7 @@ impl Report {
                 self.run.ledger.carrier
             ));
         }
+        warnings.extend(self.out_of_range.clone());
         if self.options.variance && self.options.pulse != Pulse::Delta {
             warnings.push("no variance: it is known for the delta pulse only".to_owned());
         } else if self.options.variance && self.run.passes < 2 {
@@ -247,6 +254,7 @@ mod tests {
             run,
             ledger_closure: closure(&ledger),
             non_finite,
+            out_of_range: None,
             pulse: PulseReport {
                 guard_bins_start: 0,
                 guard_bins_end: 0,
@@ -269,6 +277,8 @@ mod tests {
         let sound = report(Ledger::default(), 0, RenderOptions::default());
         assert!(sound.is_sound() && sound.ledger_closure.is_none());
         assert!(!report(leaking, 0, options).is_sound());
+        let dark = Report { out_of_range: Some("too dark".to_owned()), ..sound.clone() };
+        assert!(!dark.is_sound() && dark.find_warnings().contains(&"too dark".to_owned()));
         assert_eq!(sound.find_warnings().len(), 1, "only the interruption");
         assert_eq!(sound.rates.camera_paths_per_second, 50.0, "setup does not count");
     }

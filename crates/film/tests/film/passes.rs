@@ -226,3 +226,22 @@ fn films_that_do_not_fit_are_errors_not_aborts() {
     let film = TransientFilm::<1>::new(empty, FilmOptions::default());
     assert!(matches!(film, Err(FilmError::Empty { .. })), "checked again by the film");
 }
+
+/// Regression: arrays of infinities, or of zeros for light, came without a word.
+#[test]
+fn values_beyond_f32_are_told() {
+    let told = |energy: f64| {
+        let mut film =
+            TransientFilm::<1>::new(Layout::new(2, 1, AXIS).unwrap(), FilmOptions::default())
+                .unwrap();
+        film.add_pass(|strip| {
+            for pixel in strip.pixels() {
+                strip.deposit(pixel, 0.0, &Arrival::Instant(2.0), Spectrum([energy]));
+            }
+        });
+        film.develop().out_of_range(true)
+    };
+    assert!(told(1e40).is_some_and(|text| text.contains("2 values") && text.contains("lower")));
+    assert!(told(1e-42).is_some_and(|text| text.contains("raise all powers")));
+    assert_eq!((told(1e38), told(1e-30), told(0.0)), (None, None, None));
+}
