@@ -1,5 +1,6 @@
 //! The infinite homogeneous medium, all orders of scattering.
 
+mod angular_moments;
 mod energy;
 mod moments;
 mod paasschens;
@@ -7,6 +8,7 @@ mod plane_pulse;
 mod point_pulse;
 mod saddle;
 
+pub use angular_moments::{SincMoment, infinite_medium_sinc_moment};
 pub use energy::{Alive, AliveOfOrder, energy_alive, energy_of_order};
 pub use moments::{
     Moment, mean_depth, mean_fourth_power_of_distance, mean_square_depth, mean_square_distance,
@@ -32,6 +34,8 @@ pub(crate) static SOLUTIONS: &[Solution] = &[
         "order" => energy_of_order
     )
     .describe("share of a pulse that is alive, in total or of one order of scattering", "1"),
+    solution!("infinite_medium_sinc_moment", Quadrature, infinite_medium_sinc_moment)
+        .describe("mean of sin(kr)/(kr) over the photons of a pulse, all orders, any g", "1"),
     solution!(
         "infinite_medium_moments", ClosedForm,
         "r2" => mean_square_distance,
