@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use crate::experiment::{Effort, Experiment, Kind};
 use crate::experiments::{
-    calibration, energy, equal_time, fresnel, kernels, samplers, single_scatter, sphere, tables,
+    calibration, echoes, energy, equal_time, fresnel, kernels, mirrors, refraction, samplers,
+    single_scatter, sphere, tables,
 };
 use crate::sabotage::Twin;
 use crate::suite::SUITE_LEVEL;
@@ -40,6 +41,9 @@ fn sound(effort: Effort) -> Experiments {
         kernels::all(),
         energy::all(),
         fresnel::all(),
+        echoes::all(),
+        refraction::all(effort),
+        mirrors::all(effort),
         sphere::all(effort),
         single_scatter::all(effort),
         equal_time::all(effort),

@@ -1,12 +1,17 @@
 //! The questions, one module for each subject.
 
 pub mod calibration;
+pub mod echoes;
 pub mod energy;
 pub mod equal_time;
 pub mod fresnel;
 pub mod kernels;
 mod marching;
+pub mod mirrors;
+pub mod refraction;
 pub mod samplers;
+mod screen;
+mod sights;
 pub mod single_scatter;
 pub mod sphere;
 pub mod tables;

@@ -52,7 +52,8 @@ impl ErrorAgainstTime {
         clock: Clock,
         of: impl Fn(&Curve) -> Vec<Series>,
     ) -> Result<String, PlotError> {
-        let time = if clock == Clock::Wall { "wall time [s]" } else { "CPU time of all threads [s]" };
+        let time =
+            if clock == Clock::Wall { "wall time [s]" } else { "CPU time of all threads [s]" };
         Chart {
             title: format!("{} ({} runs each, 95 % intervals)", self.scene, self.replicates),
             x: Axis::logarithmic(time),
