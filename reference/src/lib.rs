@@ -35,6 +35,7 @@ pub mod infinite_medium;
 pub mod interfaces;
 pub mod numerics;
 pub mod phase;
+mod published;
 pub mod registry;
 pub mod single_scattering;
 pub mod tables;

@@ -11,10 +11,13 @@
 //!
 //! The error of a row is relative to its value. A value of 0 stands for darkness, before a front
 //! or outside a kernel, which is a matter of cases and not of rounding: it must be met exactly.
+//! What is allowed is the tolerance of the solution, or the row's own `relative_error_estimate`, if
+//! the table knows its value less well than that. Tables of third parties are read by `published`.
 //!
 //! [`registry`]: crate::registry
 
 use crate::error::{ReferenceError, Result};
+use crate::published;
 use crate::registry::{self, Solution};
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
@@ -36,9 +39,11 @@ pub struct TableReport {
 /// How a solution compares with its table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// The largest relative error that is allowed.
+    /// The largest relative error that is allowed, except for rows that state a larger one.
     pub tolerance: f64,
-    /// The row with the largest error, unless there are no rows.
+    /// How many rows do.
+    pub widened: usize,
+    /// The row with the largest error for its tolerance, unless there are no rows.
     pub worst: Option<RowError>,
 }
 
@@ -53,6 +58,15 @@ pub struct RowError {
     pub found: std::result::Result<f64, String>,
     /// The relative error; infinite without a value, or if 0 is missed.
     pub relative_error: f64,
+    /// The largest relative error that is allowed here.
+    pub tolerance: f64,
+}
+
+impl RowError {
+    /// The error in units of what is allowed.
+    fn severity(&self) -> f64 {
+        self.relative_error / self.tolerance
+    }
 }
 
 /// The outcome for one table.
@@ -71,8 +85,8 @@ impl TableReport {
     pub fn verdict(&self) -> Verdict {
         match &self.comparison {
             None => Verdict::Unknown,
-            Some(Comparison { tolerance, worst: Some(worst) })
-                if worst.relative_error <= *tolerance =>
+            Some(Comparison { worst: Some(worst), .. })
+                if worst.relative_error <= worst.tolerance =>
             {
                 Verdict::Passed
             }
@@ -108,8 +122,12 @@ pub fn evaluate_text(text: &str, path: &Path) -> Result<TableReport> {
     let name = name.unwrap_or_else(|| {
         path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
     });
-    let comparison = match registry::find(&name) {
+    let published = published::solution_of(&name);
+    let comparison = match registry::find(published.unwrap_or(&name)) {
         None => None,
+        Some(solution) if published.is_some() => {
+            Some(compare(solution, &published::rows(text, path)?))
+        }
         Some(solution) => Some(compare(solution, &parse::<Table>(text, path)?.rows)),
     };
     Ok(TableReport { name, rows: rows.len(), comparison })
@@ -120,8 +138,10 @@ fn compare(solution: &Solution, rows: &[Row]) -> Comparison {
         .iter()
         .enumerate()
         .map(|(index, row)| row_error(solution, index, row))
-        .max_by(|a, b| a.relative_error.total_cmp(&b.relative_error));
-    Comparison { tolerance: solution.tolerance.relative(), worst }
+        .max_by(|a, b| a.severity().total_cmp(&b.severity()));
+    let tolerance = solution.tolerance.relative();
+    let widened = rows.iter().filter(|row| row.tolerance(solution) > tolerance).count();
+    Comparison { tolerance, widened, worst }
 }
 
 fn row_error(solution: &Solution, index: usize, row: &Row) -> RowError {
@@ -133,7 +153,8 @@ fn row_error(solution: &Solution, index: usize, row: &Row) -> RowError {
             .map_err(|error| explain(&error)),
     };
     let relative_error = found.as_ref().map_or(f64::INFINITY, |&v| relative_error(v, row.value));
-    RowError { row: index, expected: row.value, found, relative_error }
+    let tolerance = row.tolerance(solution);
+    RowError { row: index, expected: row.value, found, relative_error, tolerance }
 }
 
 fn relative_error(found: f64, expected: f64) -> f64 {
@@ -154,7 +175,7 @@ fn explain(error: &dyn std::error::Error) -> String {
     }
 }
 
-fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
+pub(crate) fn parse<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T> {
     let path: PathBuf = path.into();
     serde_json::from_str(text).map_err(|source| ReferenceError::Parse { path, source })
 }
@@ -172,12 +193,22 @@ struct Table {
     rows: Vec<Row>,
 }
 
+/// One value of a table.
 #[derive(Debug, Deserialize)]
-struct Row {
+pub(crate) struct Row {
     #[serde(rename = "in")]
-    inputs: Map<String, Value>,
-    quantity: Option<String>,
-    value: f64,
+    pub(crate) inputs: Map<String, Value>,
+    pub(crate) quantity: Option<String>,
+    pub(crate) value: f64,
+    /// How well the table knows the value, if it says so.
+    pub(crate) relative_error_estimate: Option<f64>,
+}
+
+impl Row {
+    /// The largest relative error that is allowed.
+    fn tolerance(&self, solution: &Solution) -> f64 {
+        solution.tolerance.relative().max(self.relative_error_estimate.unwrap_or(0.0))
+    }
 }
 
 #[cfg(test)]
@@ -207,6 +238,25 @@ mod tests {
         let outside = one_row(UNIT_SPHERE, INVERSE_AREA * (1.0 + 2e-12));
         assert_eq!(outside.verdict(), Verdict::Failed);
         assert!((worst(&outside).relative_error - 2e-12).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_row_that_is_known_less_well_has_its_own_tolerance() {
+        let table = |estimate: &str| {
+            let value = INVERSE_AREA * (1.0 + 2e-12);
+            let row = format!(r#""value": {value:e}, "relative_error_estimate": {estimate}"#);
+            report(&format!(r#"{{"rows": [{{"in": {UNIT_SPHERE}, {row}}}]}}"#)).unwrap()
+        };
+        let widened = |report: &TableReport| report.comparison.as_ref().unwrap().widened;
+        for (estimate, verdict, count) in [
+            ("3e-12", Verdict::Passed, 1),
+            ("1.5e-12", Verdict::Failed, 1),
+            ("1e-20", Verdict::Failed, 0),
+            ("null", Verdict::Failed, 0),
+        ] {
+            let report = table(estimate);
+            assert_eq!((report.verdict(), widened(&report)), (verdict, count), "{estimate}");
+        }
     }
 
     #[test]

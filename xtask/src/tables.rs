@@ -44,20 +44,23 @@ fn line(report: &TableReport, width: usize) -> String {
     format!("{name:width$}  {rows:4}  {worst:>11}  {tolerance:>9}  {verdict}{reason}")
 }
 
-/// The worst error, the tolerance, and for a failure its row.
+/// The worst error, its tolerance, and for a failure its row.
 fn columns(comparison: &Comparison, verdict: Verdict) -> (String, String, String) {
-    let tolerance = format!("{:.0e}", comparison.tolerance);
+    let tolerance = |relative: f64| format!("{relative:.0e}");
     let Some(worst) = &comparison.worst else {
-        return ("-".into(), tolerance, ": no rows".into());
+        return ("-".into(), tolerance(comparison.tolerance), ": no rows".into());
     };
     let reason = match (&worst.found, verdict) {
+        (_, Verdict::Passed | Verdict::Unknown) if comparison.widened > 0 => {
+            format!(", {} rows to their own precision", comparison.widened)
+        }
         (_, Verdict::Passed | Verdict::Unknown) => String::new(),
         (Ok(found), Verdict::Failed) => {
             format!(": row {} gives {found:e} for {:e}", worst.row, worst.expected)
         }
         (Err(problem), Verdict::Failed) => format!(": row {}: {problem}", worst.row),
     };
-    (format!("{:.1e}", worst.relative_error), tolerance, reason)
+    (format!("{:.1e}", worst.relative_error), tolerance(worst.tolerance), reason)
 }
 
 #[cfg(test)]

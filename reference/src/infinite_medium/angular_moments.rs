@@ -74,7 +74,9 @@ pub(super) fn sinc_moment(g: f64, phase: f64, depth: f64) -> f64 {
             levels.chebyshev(&y, rotation, scattering, &bessel)
         };
         let decay = (-scattering).exp();
-        y.iter_mut().for_each(|value| *value *= decay);
+        for value in &mut y {
+            *value *= decay;
+        }
     }
     // The small entries first.
     y.iter().enumerate().rev().map(|(l, v)| if l % 2 == 0 { v * v } else { -v * v }).sum()
@@ -175,7 +177,9 @@ fn bessel_j(rho: f64) -> Vec<f64> {
         };
         (above, value) = (value, 2.0 * n as f64 / rho * value - above);
     }
-    values.iter_mut().for_each(|value| *value /= norm);
+    for value in &mut values {
+        *value /= norm;
+    }
     values
 }
 

@@ -6,6 +6,7 @@ mod moments;
 mod paasschens;
 mod plane_pulse;
 mod point_pulse;
+mod radial_energy;
 mod saddle;
 
 pub use angular_moments::{SincMoment, infinite_medium_sinc_moment};
@@ -21,6 +22,10 @@ pub use plane_pulse::{
 pub use point_pulse::{
     PointPulse, PointPulseBin, PointPulseOrder, point_pulse_fluence, point_pulse_fluence_bins,
     point_pulse_fluence_by_order,
+};
+pub use radial_energy::{
+    EnergyWithin, ShellEnergy, ShellEnergyOrder, scattered_energy_within_radius,
+    scattered_shell_energy, scattered_shell_energy_by_order,
 };
 
 use crate::registry::Solution;
@@ -60,6 +65,14 @@ pub(crate) static SOLUTIONS: &[Solution] = &[
         "total" => plane_pulse_cells_with_ballistic
     )
     .describe("fluence rate of a plane pulse, mean over a cell", "1/mfp"),
+    solution!("scattered_energy_within_radius", Quadrature, scattered_energy_within_radius)
+        .describe("share of a point pulse that is scattered light within a radius, any g", "1"),
+    solution!(
+        "scattered_shell_energy", Quadrature,
+        "all" => scattered_shell_energy,
+        "order" => scattered_shell_energy_by_order
+    )
+    .describe("share of a point pulse that is scattered light in a shell, isotropic", "1"),
     solution!("paasschens_2d_4d", ClosedForm, "2D" => paasschens_2d, "4D" => paasschens_4d)
         .describe("density of scattered light of a point pulse in 2 and 4 dimensions", "1/mfp^d"),
     solution!("paasschens_3d", ClosedForm, "paasschens_closed" => paasschens_3d)
