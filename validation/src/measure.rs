@@ -5,6 +5,7 @@
 
 use tpb_beams::{BeamOptions, PhotonBeams};
 use tpb_film::{Arrays, FilmOptions, Layout, TimeAxis, TransientFilm};
+use tpb_light::{LightOptions, LightTracer};
 use tpb_path::{PathOptions, PathTracer};
 use tpb_render::{Budget, Method, RunSettings, RunSummary, Stopwatch, run};
 use tpb_scene::{FilmSpec, IntegratorSpec, Plan, Scene, Transport};
@@ -19,6 +20,8 @@ pub enum Estimator {
     Path(PathOptions),
     /// Photon beams.
     Beams(BeamOptions),
+    /// The light tracer.
+    Light(LightOptions),
 }
 
 impl Estimator {
@@ -39,6 +42,7 @@ impl Estimator {
         match self {
             Self::Path(_) => "path",
             Self::Beams(_) => "beams",
+            Self::Light(_) => "light",
         }
     }
 
@@ -51,6 +55,10 @@ impl Estimator {
     ) -> Result<Box<dyn Method<C> + 'a>> {
         Ok(match self {
             Self::Path(options) => Box::new(PathTracer::<C>::new(scene, plan, integrator, options)),
+            Self::Light(options) => Box::new(
+                LightTracer::<C>::new(scene, plan, integrator, options)
+                    .map_err(|error| ValidationError::unusable("the light tracer", error))?,
+            ),
             Self::Beams(options) => Box::new(
                 PhotonBeams::new(scene, plan, integrator, options)
                     .map_err(|error| ValidationError::unusable("photon beams", error))?,

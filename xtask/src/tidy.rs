@@ -25,6 +25,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("tpb-transport", 2),
     ("tpb-path", 3),
     ("tpb-beams", 3),
+    ("tpb-light", 3),
     ("tpb-reference", 3),
     ("tpb-validation", 4),
     ("tpb-benches", 4),

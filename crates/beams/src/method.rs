@@ -110,6 +110,7 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
             surface_photons,
             pairs_tested: pairs.tested,
             pairs_accepted: pairs.accepted,
+            ..Counts::default()
         };
         PassReport { ledger: traced.ledger, counts }
     }

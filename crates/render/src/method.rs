@@ -54,6 +54,9 @@ pub struct Counts {
     pub beams: u64,
     /// Surface photons stored.
     pub surface_photons: u64,
+    /// Photons' vertices whose connection to the eye was tried.
+    #[serde(default)]
+    pub connections: u64,
     /// Ray-beam pairs tested.
     pub pairs_tested: u64,
     /// Ray-beam pairs that contributed.
@@ -75,6 +78,7 @@ impl Counts {
         self.photon_paths += other.photon_paths;
         self.beams += other.beams;
         self.surface_photons += other.surface_photons;
+        self.connections += other.connections;
         self.pairs_tested += other.pairs_tested;
         self.pairs_accepted += other.pairs_accepted;
     }

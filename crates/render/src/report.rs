@@ -114,6 +114,9 @@ pub struct Rates {
     pub camera_paths_per_second: f64,
     /// Photons emitted.
     pub photon_paths_per_second: f64,
+    /// Photons' vertices whose connection to the eye was tried.
+    #[serde(default)]
+    pub connections_per_second: f64,
     /// Ray-beam pairs tested.
     pub pairs_tested_per_second: f64,
     /// Ray-beam pairs that contributed.
@@ -127,6 +130,7 @@ impl Rates {
         Self {
             camera_paths_per_second: run.per_second(counts.camera_paths),
             photon_paths_per_second: run.per_second(counts.photon_paths),
+            connections_per_second: run.per_second(counts.connections),
             pairs_tested_per_second: run.per_second(counts.pairs_tested),
             pairs_accepted_per_second: run.per_second(counts.pairs_accepted),
         }

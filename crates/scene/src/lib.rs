@@ -26,5 +26,7 @@ pub use flight::{Flight, Hit, Span, Vertex};
 pub use geometry::Primitive;
 pub use medium::{Medium, MediumBoundary, MediumId, Region};
 pub use plan::{Item, Kernel, Media, Plan, Transport};
-pub use sensor::{FilmSpec, FovAxis, IntegratorSpec, MethodName, PixelFormat, Sensor, TimeSpec};
+pub use sensor::{
+    FilmPoint, FilmSpec, FovAxis, IntegratorSpec, MethodName, PixelFormat, Sensor, TimeSpec,
+};
 pub use world::{Scene, Shape};

@@ -38,6 +38,8 @@ pub struct Plan {
     pub surface_photons: bool,
     /// Light is connected from emitters to media and surfaces.
     pub next_event_estimation: bool,
+    /// Photons are connected from emitters, surfaces and media to the pinhole.
+    pub eye_connections: bool,
     /// The kernel that fits the scene.
     pub kernel: Kernel,
     /// The film keeps time bins.
@@ -90,10 +92,18 @@ pub struct Item {
     pub reason: String,
     /// Whether light is missing from the image because this part is left out.
     pub loses_light: bool,
-    /// The only method that it concerns; `None` concerns all.
+    /// The methods that it concerns.
     #[serde(skip)]
-    pub only: Option<MethodName>,
+    pub methods: &'static [MethodName],
 }
+
+/// What concerns every method.
+const ALL: &[MethodName] = &[MethodName::Path, MethodName::Beams, MethodName::Light];
+/// Methods that connect camera paths to lights.
+const FROM_THE_EYE: &[MethodName] = &[MethodName::Path, MethodName::Beams];
+const PATH: &[MethodName] = &[MethodName::Path];
+const BEAMS: &[MethodName] = &[MethodName::Beams];
+const LIGHT: &[MethodName] = &[MethodName::Light];
 
 /// Whether a part is needed (`Ok`) or left out (`Err`), each with the reason.
 type Decision = Result<String, String>;
@@ -115,6 +125,7 @@ impl Plan {
             beams: false,
             surface_photons: false,
             next_event_estimation: false,
+            eye_connections: false,
             kernel: kernel(scene),
             time_bins: scene.film.time.is_some(),
             needs: vec![],
@@ -125,7 +136,9 @@ impl Plan {
         plan.decide_beams(scene, integrator);
         plan.decide_surfaces(scene, integrator);
         plan.decide_connections(scene, integrator);
+        plan.decide_eye_connections(scene, integrator);
         plan.tell_lost_light(scene, integrator);
+        plan.tell_light_behind_specular(scene, integrator);
         plan.tell_time(scene);
         plan
     }
@@ -133,7 +146,7 @@ impl Plan {
     /// The same with the lines that concern this method.
     #[must_use]
     pub fn of_method(mut self, method: MethodName) -> Self {
-        let concerns = |item: &Item| item.only.is_none_or(|only| only == method);
+        let concerns = |item: &Item| item.methods.contains(&method);
         self.needs.retain(concerns);
         self.left_out.retain(concerns);
         self
@@ -152,9 +165,9 @@ impl Plan {
             Transport::Mono => "one channel",
             Transport::Rgb => "three channels",
         };
-        self.note(None, channels, Ok(reason.to_owned()));
+        self.note(ALL, channels, Ok(reason.to_owned()));
         if self.transport == Transport::Mono {
-            self.note(None, "two more channels", Err("the scene is achromatic".to_owned()));
+            self.note(ALL, "two more channels", Err("the scene is achromatic".to_owned()));
         }
     }
 
@@ -165,7 +178,7 @@ impl Plan {
             Media::Absorbing => ("transmittance", Ok(format!("media: {names}"))),
             Media::Scattering => ("transmittance and scattering", Ok(format!("media: {names}"))),
         };
-        self.note(None, part, decision);
+        self.note(ALL, part, decision);
     }
 
     fn decide_beams(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
@@ -178,7 +191,7 @@ impl Plan {
         } else {
             Ok("a medium scatters light")
         };
-        self.beams = self.note(Some(MethodName::Beams), "photon beams", owned(decision));
+        self.beams = self.note(BEAMS, "photon beams", owned(decision));
         if self.beams {
             let (kernel, why) = match self.kernel {
                 Kernel::TwoD => (
@@ -193,14 +206,14 @@ impl Plan {
                     "no temporal blur; sound unless laser light is turned along the view",
                 ),
             };
-            self.note(Some(MethodName::Beams), kernel, Ok(why.to_owned()));
+            self.note(BEAMS, kernel, Ok(why.to_owned()));
         }
     }
 
     fn decide_surfaces(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
         let specular = [&self.refracting[..], &self.mirrors].concat().join(", ");
         self.note(
-            None,
+            ALL,
             "specular chains",
             if specular.is_empty() {
                 Err("no mirror and no refracting boundary".to_owned())
@@ -219,7 +232,7 @@ impl Plan {
         } else {
             Ok(format!("diffuse shapes: {}", self.diffuse.join(", ")))
         };
-        self.surface_photons = self.note(Some(MethodName::Beams), "surface photons", decision);
+        self.surface_photons = self.note(BEAMS, "surface photons", decision);
     }
 
     /// Beams connect at surfaces only, the path tracer in media too.
@@ -235,11 +248,34 @@ impl Plan {
         } else {
             Ok("emitters that a path can connect to")
         };
-        let only = (decision.is_ok() && !surfaces).then_some(MethodName::Path);
-        self.next_event_estimation = self.note(only, part, owned(decision));
-        if only.is_some() {
+        let in_media_only = decision.is_ok() && !surfaces;
+        let methods = if in_media_only { PATH } else { FROM_THE_EYE };
+        self.next_event_estimation = self.note(methods, part, owned(decision));
+        if in_media_only {
             let reason = "no surface scatters diffusely; in media, beams bring all light";
-            self.note(Some(MethodName::Beams), part, Err(reason.to_owned()));
+            self.note(BEAMS, part, Err(reason.to_owned()));
+        }
+    }
+
+    /// What the light tracer does.
+    fn decide_eye_connections(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
+        let (surfaces, media) = (!self.diffuse.is_empty(), self.media == Media::Scattering);
+        let lamps = integrator.min_depth <= 1 && has_lamps(scene);
+        let decision = if scene.power().is_zero() {
+            Err("the scene has no light")
+        } else if !(surfaces || media || lamps) {
+            Err("nothing scatters, and no emitter has an area")
+        } else if !(lamps || integrator.reaches(2)) {
+            Err("max_depth leaves no scattering")
+        } else {
+            Ok("photons at surfaces, in media and on lamps")
+        };
+        self.eye_connections = self.note(LIGHT, "connections to the eye", owned(decision));
+        let eye = scene.sensor.region.medium.map(|id| scene.medium(id));
+        if self.eye_connections && eye.is_some_and(|medium| medium.coefficients.scatters()) {
+            let reason = "the eye is in fog: unbiased, but rare bright photons near the eye make \
+                          the variance infinite (logarithmically); errors shown are too small";
+            self.note(LIGHT, "photons close to the eye", Ok(reason.to_owned()));
         }
     }
 
@@ -248,7 +284,8 @@ impl Plan {
         let seen = !self.diffuse.is_empty() || self.media == Media::Scattering;
         if seen && integrator.reaches(2) && !self.unconnectable.is_empty() {
             let names = self.unconnectable.join(", ");
-            self.lose("light of lasers", &format!("no path can connect to: {names}"));
+            let reason = format!("no path can connect to: {names}; photon beams render it");
+            self.lose(PATH, "light of lasers", &reason);
         }
         let points = emitters(scene, |kind| {
             matches!(kind, EmitterKind::Point { .. } | EmitterKind::Spot { .. })
@@ -257,7 +294,22 @@ impl Plan {
         if seen && integrator.reaches(3) && specular && !points.is_empty() {
             let names = points.join(", ");
             let reason = format!("no path can hit a point by a mirror or through glass: {names}");
-            self.lose("caustics of points and spots", &reason);
+            let reason = format!("{reason}; photon beams render it");
+            self.lose(PATH, "caustics of points and spots", &reason);
+        }
+    }
+
+    /// Light that the light tracer cannot find: nothing connects across mirrors and smooth glass.
+    fn tell_light_behind_specular(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
+        let specular = [&self.refracting[..], &self.mirrors].concat().join(", ");
+        // Seen in a mirror, a lamp has depth 2, what another emitter lights 3.
+        let least_depth = if has_lamps(scene) { 2 } else { 3 };
+        let seen = has_lamps(scene) || !self.diffuse.is_empty() || self.media == Media::Scattering;
+        let light = !scene.power().is_zero();
+        if seen && light && !specular.is_empty() && integrator.reaches(least_depth) {
+            let part = "light in mirrors and glass";
+            let reason = format!("no photon connects to the eye across: {specular}");
+            self.lose(LIGHT, part, &format!("{reason}; path and photon beams render it"));
         }
     }
 
@@ -268,14 +320,14 @@ impl Plan {
             )),
             None => Err("the film has no time axis".to_owned()),
         };
-        self.note(None, "time bins", decision);
+        self.note(ALL, "time bins", decision);
     }
 
     /// Writes a decision down, and says whether the part is needed.
-    fn note(&mut self, only: Option<MethodName>, part: &str, decision: Decision) -> bool {
+    fn note(&mut self, methods: &'static [MethodName], part: &str, decision: Decision) -> bool {
         let needed = decision.is_ok();
         let (Ok(reason) | Err(reason)) = decision;
-        let item = Item { part: part.to_owned(), reason, loses_light: false, only };
+        let item = Item { part: part.to_owned(), reason, loses_light: false, methods };
         if needed {
             self.needs.push(item);
         } else {
@@ -284,11 +336,10 @@ impl Plan {
         needed
     }
 
-    /// Light that the path tracer leaves out and photon beams render.
-    fn lose(&mut self, part: &str, reason: &str) {
-        let reason = format!("{reason}; photon beams render it");
-        let only = Some(MethodName::Path);
-        self.left_out.push(Item { part: part.to_owned(), reason, loses_light: true, only });
+    /// Light that some methods leave out.
+    fn lose(&mut self, methods: &'static [MethodName], part: &str, reason: &str) {
+        let (part, reason) = (part.to_owned(), reason.to_owned());
+        self.left_out.push(Item { part, reason, loses_light: true, methods });
     }
 }
 
@@ -323,6 +374,11 @@ fn is_chromatic(scene: &Scene) -> bool {
     let surfaces = scene.shapes.iter().flat_map(|s| s.bsdf.factors());
     let emitters = scene.emitters.iter().map(|e| e.kind.color());
     media.chain(surfaces).chain(emitters).any(|c| !Rgb::is_achromatic(c))
+}
+
+/// Whether an emitter of some area gives light.
+fn has_lamps(scene: &Scene) -> bool {
+    !emitters(scene, |kind| matches!(kind, EmitterKind::Area { .. })).is_empty()
 }
 
 /// Names of the emitters of some kind that give light.

@@ -81,6 +81,63 @@ impl Sensor {
         (self.forward + a * self.left + b * self.up).normalize()
     }
 
+    /// Where light that travels against `direction` (away from the pinhole) meets the film; `None`
+    /// where it misses it. The inverse of [`Sensor::direction`].
+    #[inline]
+    pub fn project(&self, direction: DVec3) -> Option<FilmPoint> {
+        let along = direction.dot(self.forward);
+        if along <= 0.0 {
+            return None;
+        }
+        let (w, h) = (self.film.0 as f64, self.film.1 as f64);
+        let x = 0.5 * w * (1.0 - direction.dot(self.left) / (along * self.half_width));
+        let y = 0.5 * h * (1.0 - direction.dot(self.up) / (along * self.half_height));
+        let on_film = (0.0..w).contains(&x) && (0.0..h).contains(&y);
+        on_film.then(|| FilmPoint { x, y, cosine: along / direction.length() })
+    }
+
+    /// The part of `start..end` (which may be infinite) of a ray that the camera has in view, were
+    /// nothing in between; `None` if it sees nothing of it.
+    #[inline]
+    pub fn in_view(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        (mut start, mut end): (f64, f64),
+    ) -> Option<(f64, f64)> {
+        let from_eye = origin - self.position;
+        // Inward normals of the pyramid's sides.
+        let (w, h) = (self.half_width * self.forward, self.half_height * self.forward);
+        for normal in [w - self.left, w + self.left, h - self.up, h + self.up] {
+            let (height, slope) = (from_eye.dot(normal), direction.dot(normal));
+            let crossing = -height / slope;
+            if slope > 0.0 {
+                start = start.max(crossing);
+            } else if slope < 0.0 {
+                end = end.min(crossing);
+            } else if height < 0.0 {
+                return None;
+            }
+        }
+        (start < end).then_some((start, end))
+    }
+
+    /// What a unit of intensity \[W/sr\] at distance 1 m, were nothing in between, adds to the
+    /// pixel that it is seen in at cosine `cosine` to the axis: 1/(A cos³θ) \[m⁻² sr⁻¹ per W/sr\],
+    /// A being the pixel's area on the plane at unit distance. (The pixel's value is
+    /// (1/A) ∫ L dA over that area, and dω = cos³θ dA there.)
+    #[inline]
+    pub fn importance(&self, cosine: f64) -> f64 {
+        1.0 / (self.pixel_area() * cosine * cosine * cosine)
+    }
+
+    /// Area of a pixel on a plane at distance 1 along the axis \[m²/m²\].
+    #[inline]
+    pub fn pixel_area(&self) -> f64 {
+        let pixels = self.film.0 as f64 * self.film.1 as f64;
+        4.0 * self.half_width * self.half_height / pixels
+    }
+
     /// Unit direction of the optical axis.
     pub fn forward(&self) -> DVec3 {
         self.forward
@@ -90,6 +147,17 @@ impl Sensor {
     pub fn pixel_width(&self) -> f64 {
         2.0 * self.half_width / self.film.0 as f64
     }
+}
+
+/// A point of the film, seen from the pinhole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmPoint {
+    /// Column from the left edge \[pixels\].
+    pub x: f64,
+    /// Row from the top edge \[pixels\].
+    pub y: f64,
+    /// Cosine of the angle to the optical axis.
+    pub cosine: f64,
 }
 
 /// What the scene's film asks for.
@@ -132,6 +200,8 @@ pub enum MethodName {
     Path,
     /// Photon beams.
     Beams,
+    /// The light tracer.
+    Light,
 }
 
 /// Defaults for depths and method; scattering events are counted as in Mitsuba: depth 1 is an
@@ -183,5 +253,69 @@ mod tests {
         );
         assert!((sensor.direction(100.0, 50.0) - DVec3::Z).length() < 1e-15);
         assert!((sensor.pixel_width() - 0.01).abs() < 1e-15);
+        assert!((sensor.pixel_area() - 1e-4).abs() < 1e-18);
+    }
+
+    /// A camera of 12 x 5 pixels, turned and away from the origin.
+    fn turned() -> Sensor {
+        let rotation = glam::DMat3::from_euler(glam::EulerRot::XYZ, 0.4, -1.1, 2.0);
+        let to_world = DAffine3::from_mat3_translation(rotation, DVec3::new(3.0, -1.0, 0.5));
+        Sensor::perspective(to_world, 100.0, FovAxis::X, 12, 5)
+    }
+
+    #[test]
+    fn projection_inverts_the_direction() {
+        let sensor = turned();
+        for (x, y) in [(0.1, 0.2), (11.9, 4.9), (6.0, 2.5), (3.3, 0.01)] {
+            let direction = sensor.direction(x, y);
+            let found = sensor.project(2.5 * direction).expect("on the film");
+            assert!((found.x - x).abs() < 1e-12 && (found.y - y).abs() < 1e-12, "{found:?}");
+            assert!((found.cosine - direction.dot(sensor.forward())).abs() < 1e-14);
+            assert!(sensor.project(-direction).is_none(), "behind");
+        }
+        for (x, y) in [(-0.1, 2.0), (12.1, 2.0), (6.0, -0.1), (6.0, 5.1)] {
+            assert!(sensor.project(sensor.direction(x, y)).is_none(), "{x} {y}");
+        }
+    }
+
+    /// Pixels of cosine⁻³ importance cover the film's solid angle: Ω/(A cos³θ) of uniform directions
+    /// is the number of pixels. A rectangle of half edges a, b at distance 1 has
+    /// Ω = 4 asin(ab/√((1 + a²)(1 + b²))).
+    #[test]
+    fn importance_is_that_of_the_area_on_the_image_plane() {
+        let sensor = turned();
+        let (n, mut omega) = (400, 0.0);
+        for i in 0..n * n {
+            let (x, y) = (f64::from(i % n) + 0.5, f64::from(i / n) + 0.5);
+            let (x, y) = (12.0 * x / f64::from(n), 5.0 * y / f64::from(n));
+            let cosine = sensor.direction(x, y).dot(sensor.forward());
+            omega += 60.0 / f64::from(n * n) / sensor.importance(cosine);
+        }
+        let (a, b) = (sensor.half_width, sensor.half_height);
+        let expected = 4.0 * (a * b / ((1.0 + a * a) * (1.0 + b * b)).sqrt()).asin();
+        assert!((omega / expected - 1.0).abs() < 1e-5, "{omega} {expected}");
+    }
+
+    #[test]
+    fn the_part_in_view_is_where_points_project_onto_the_film() {
+        let sensor = turned();
+        let mut rng = tpb_optics::Stream::new(1, 2, 3);
+        let mut draw = || tpb_optics::warp::uniform_sphere(rng.uniform(), rng.uniform());
+        let mut seen = 0;
+        for _ in 0..400 {
+            let origin = sensor.position + 2.0 * draw();
+            let direction = draw();
+            let part = sensor.in_view(origin, direction, (0.5, f64::INFINITY));
+            seen += u32::from(part.is_some());
+            for i in 0..200 {
+                let t = 0.5 + 0.031 * f64::from(i);
+                let visible = sensor.project(origin + t * direction - sensor.position).is_some();
+                let inside = part.is_some_and(|(start, end)| start <= t && t <= end);
+                assert_eq!(visible, inside, "{t} {part:?}");
+            }
+        }
+        assert!((40..360).contains(&seen), "{seen}");
+        let backwards = sensor.in_view(sensor.position, -sensor.forward(), (0.0, 9.0));
+        assert!(backwards.is_none());
     }
 }

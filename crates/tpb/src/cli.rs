@@ -146,6 +146,9 @@ pub(crate) struct MethodArgs {
     pub(crate) beams: BeamArgs,
 
     #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+
+    #[command(flatten)]
     pub(crate) path: PathArgs,
 }
 
@@ -181,15 +184,7 @@ pub(crate) struct BeamArgs {
     #[arg(long, value_name = "E", allow_hyphen_values = true)]
     pub(crate) surface_radius_exponent: Option<f64>,
 
-    /// Photons emitted in a pass
-    #[arg(
-        long, value_name = "N",
-        value_parser = clap::value_parser!(u64).range(1..=1_000_000_000),
-        allow_negative_numbers = true
-    )]
-    pub(crate) photons: Option<u64>,
-
-    /// How many of them leave beams; all leave surface photons
+    /// How many of the photons leave beams; all leave surface photons
     #[arg(
         long, value_name = "N",
         value_parser = clap::value_parser!(u64).range(1..=1_000_000_000),
@@ -210,6 +205,21 @@ pub(crate) struct BeamArgs {
     pub(crate) light_samples: Option<u32>,
 }
 
+/// Options of the methods that trace photons.
+#[derive(Debug, Default, PartialEq, Args)]
+#[command(
+    next_help_heading = "Options of beams and light (chosen from scene and film unless given)"
+)]
+pub(crate) struct PhotonArgs {
+    /// Photons emitted in a pass
+    #[arg(
+        long, value_name = "N",
+        value_parser = clap::value_parser!(u64).range(1..=1_000_000_000),
+        allow_negative_numbers = true
+    )]
+    pub(crate) photons: Option<u64>,
+}
+
 /// Options of the path tracer.
 #[derive(Debug, Default, PartialEq, Args)]
 #[command(next_help_heading = "Options of path (chosen from the film unless given)")]
@@ -226,6 +236,8 @@ pub(crate) enum MethodArg {
     Beams,
     /// Transient path tracer, unbiased
     Path,
+    /// Transient light tracer, unbiased: photons connected to the pinhole
+    Light,
 }
 
 /// A kernel.

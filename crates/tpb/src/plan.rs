@@ -11,7 +11,7 @@ use crate::failure::Failure;
 use crate::prepare::{Job, MethodSpec};
 use crate::print;
 
-/// Prints the plan: of the method that is asked for, else of both methods, the one that `render`
+/// Prints the plan: of the method that is asked for, else of all methods, the one that `render`
 /// would choose first.
 pub(crate) fn run(args: &PlanArgs) -> Result<ExitCode, Failure> {
     let job = Job::new(&args.job, &args.method)?;
@@ -21,13 +21,16 @@ pub(crate) fn run(args: &PlanArgs) -> Result<ExitCode, Failure> {
     }
     let mut text = as_text(&job, &options);
     if args.job.method.is_none() && args.method == MethodArgs::default() {
-        let other = match job.method {
-            MethodSpec::Beams(_) => MethodArg::Path,
-            MethodSpec::Path(_) => MethodArg::Beams,
+        let others = match job.method {
+            MethodSpec::Beams(_) => [MethodArg::Path, MethodArg::Light],
+            MethodSpec::Path(_) => [MethodArg::Beams, MethodArg::Light],
+            MethodSpec::Light(_) => [MethodArg::Beams, MethodArg::Path],
         };
-        let job = Job::new(&JobArgs { method: Some(other), ..args.job.clone() }, &args.method)?;
-        text.push('\n');
-        text.push_str(&as_text(&job, &self::options(&job)?));
+        for other in others {
+            let job = Job::new(&JobArgs { method: Some(other), ..args.job.clone() }, &args.method)?;
+            text.push('\n');
+            text.push_str(&as_text(&job, &self::options(&job)?));
+        }
     }
     print::out_and_done(&text)
 }

@@ -3,13 +3,15 @@
 use std::num::NonZero;
 
 use tpb_beams::{BeamLength, BeamOptions, KernelChoice, PhotonBeams, Temporal};
+use tpb_light::{LightOptions, LightTracer};
 use tpb_path::{PathOptions, PathTracer};
 use tpb_render::Method;
 use tpb_scene::load::{self, LoadedScene, Override};
 use tpb_scene::{IntegratorSpec, MethodName, Plan};
 
 use crate::cli::{
-    BeamArgs, BeamLengthArg, JobArgs, KernelArg, MethodArg, MethodArgs, PathArgs, TemporalArg,
+    BeamArgs, BeamLengthArg, JobArgs, KernelArg, MethodArg, MethodArgs, PathArgs, PhotonArgs,
+    TemporalArg,
 };
 use crate::failure::Failure;
 
@@ -32,6 +34,8 @@ pub(crate) enum MethodSpec {
     Beams(BeamOptions),
     /// Path tracer.
     Path(PathOptions),
+    /// Light tracer.
+    Light(LightOptions),
 }
 
 impl Job {
@@ -66,6 +70,10 @@ impl Job {
             MethodSpec::Path(options) => {
                 Box::new(PathTracer::<C>::new(scene, plan, self.integrator, options))
             }
+            MethodSpec::Light(options) => Box::new(
+                LightTracer::<C>::new(scene, plan, self.integrator, options)
+                    .map_err(|e| Failure::input(e.to_string()))?,
+            ),
             MethodSpec::Beams(options) => Box::new(
                 PhotonBeams::new(scene, plan, self.integrator, options)
                     .map_err(|e| Failure::input(e.to_string()))?,
@@ -81,31 +89,39 @@ impl MethodSpec {
         own: &MethodArgs,
         integrator: &IntegratorSpec,
     ) -> Result<Self, Failure> {
-        let foreign = |name, used| {
-            let message = format!("options of {name} are given, but the method is {used}");
-            Failure::with_help(message, format!("leave them out, or add --method {name}"))
+        let asked = asked.map(|asked| match asked {
+            MethodArg::Beams => MethodName::Beams,
+            MethodArg::Path => MethodName::Path,
+            MethodArg::Light => MethodName::Light,
+        });
+        let MethodArgs { beams, photons, path } = own;
+        let spec = match asked.or(integrator.method).unwrap_or(MethodName::Beams) {
+            MethodName::Beams => Self::Beams(beam_options(beams, photons)),
+            MethodName::Path => Self::Path(PathOptions { samples_per_pass: path.samples_per_pass }),
+            MethodName::Light => Self::Light(LightOptions { photons_per_pass: photons.photons }),
         };
-        match (asked, integrator.method) {
-            (Some(MethodArg::Path), _) | (None, Some(MethodName::Path)) => {
-                if own.beams != BeamArgs::default() {
-                    return Err(foreign("beams", "path"));
-                }
-                let PathArgs { samples_per_pass } = own.path;
-                Ok(Self::Path(PathOptions { samples_per_pass }))
-            }
-            _ => {
-                if own.path != PathArgs::default() {
-                    return Err(foreign("path", "beams"));
-                }
-                Ok(Self::Beams(beam_options(&own.beams)))
+        let given = [
+            (*beams != BeamArgs::default(), &["beams"][..]),
+            (*photons != PhotonArgs::default(), &["beams", "light"]),
+            (*path != PathArgs::default(), &["path"]),
+        ];
+        for (given, owners) in given {
+            if given && !owners.contains(&spec.name()) {
+                let name = owners[0];
+                let used = spec.name();
+                let message = format!("options of {name} are given, but the method is {used}");
+                let help = format!("leave them out, or add --method {name}");
+                return Err(Failure::with_help(message, help));
             }
         }
+        Ok(spec)
     }
 
     fn method(&self) -> MethodName {
         match self {
             Self::Beams(_) => MethodName::Beams,
             Self::Path(_) => MethodName::Path,
+            Self::Light(_) => MethodName::Light,
         }
     }
 
@@ -114,6 +130,7 @@ impl MethodSpec {
         match self {
             Self::Beams(_) => "beams",
             Self::Path(_) => "path",
+            Self::Light(_) => "light",
         }
     }
 }
@@ -127,7 +144,7 @@ fn integrator(args: &JobArgs, scene: &IntegratorSpec) -> IntegratorSpec {
     }
 }
 
-fn beam_options(args: &BeamArgs) -> BeamOptions {
+fn beam_options(args: &BeamArgs, photons: &PhotonArgs) -> BeamOptions {
     BeamOptions {
         kernel: args.kernel.map(|kernel| match kernel {
             KernelArg::OneD => KernelChoice::OneD,
@@ -146,7 +163,7 @@ fn beam_options(args: &BeamArgs) -> BeamOptions {
         surface_radius: args.surface_radius,
         radius_exponent: args.radius_exponent,
         surface_radius_exponent: args.surface_radius_exponent,
-        photons_per_pass: args.photons,
+        photons_per_pass: photons.photons,
         beam_photons: args.beam_photons,
         gather_samples: args.gather_samples,
         surface_samples: args.surface_samples,

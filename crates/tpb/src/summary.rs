@@ -71,6 +71,7 @@ fn rates(report: &Report) -> String {
     let kinds = [
         (rates.camera_paths_per_second, "camera paths/s"),
         (rates.photon_paths_per_second, "photons/s"),
+        (rates.connections_per_second, "connections/s"),
         (rates.pairs_accepted_per_second, "ray-beam pairs/s"),
     ];
     let mut parts = Vec::new();

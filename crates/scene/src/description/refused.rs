@@ -147,7 +147,7 @@ const GROUPS: &[Group] = &[
     },
     Group {
         kind: "an integrator",
-        instead: "`path` (or `transient_path`) and `photon_beams` are supported",
+        instead: "`path` (or `transient_path`), `photon_beams` and `ptracer` are supported",
         names: &[
             "aov",
             "depth",
@@ -158,7 +158,6 @@ const GROUPS: &[Group] = &[
             "prb_basic",
             "prb_projective",
             "prbvolpath",
-            "ptracer",
             "stokes",
             "transient_nlos_path",
             "volpathmis",

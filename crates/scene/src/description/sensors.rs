@@ -162,6 +162,10 @@ pub enum Integrator {
     PhotonBeams(Depths),
     /// Photon beams (extension).
     TransientPhotonBeams(Depths),
+    /// The light tracer: photons connected to the pinhole.
+    Ptracer(Depths),
+    /// The light tracer (extension).
+    TransientPtracer(Depths),
 }
 
 /// Which lengths of paths count. Depth 1 is an emitter seen directly, 2 has one scattering event

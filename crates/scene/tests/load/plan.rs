@@ -37,6 +37,7 @@ fn switches_and_reasons_agree_at_every_depth() {
                 ("photon beams", plan.beams),
                 ("surface photons", plan.surface_photons),
                 ("next-event estimation", plan.next_event_estimation),
+                ("connections to the eye", plan.eye_connections),
             ] {
                 assert_eq!(needed(part), on, "{name} to depth {depth}: {part}\n{plan}");
                 assert!(on || left_out(part), "{name} to depth {depth}: {part}\n{plan}");
@@ -73,6 +74,15 @@ fn light_that_a_method_loses_is_marked() {
         assert!(lost(scene, depth, beams).is_empty(), "{word}");
     }
     assert!(lost(&shipped("mirror-caustic"), 9, path).is_empty(), "the lamp has an area");
+    // The light tracer finds caustics and lasers, but sees nothing in mirrors.
+    for (name, depth) in [("mirror-caustic-point", 3), ("mirror-caustic", 2)] {
+        let scene = shipped(name);
+        let [line] = &lost(&scene, depth, MethodName::Light)[..] else { panic!("{name}") };
+        assert!(line.contains("across: glass_shape, mirror_shape"), "{line}");
+        assert!(lost(&scene, depth - 1, MethodName::Light).is_empty(), "{name}");
+        assert!(!lost(&scene, depth, path).contains(line), "{name}");
+    }
+    assert!(lost(&laser, 9, MethodName::Light).is_empty());
     assert!(lost(&cornell(&[]), 9, path).is_empty());
 }
 

@@ -227,6 +227,12 @@ fn overrides_change_what_is_loaded_and_what_is_reported() {
     };
     assert_eq!(loaded.scene.integrator.method, Some(MethodName::Beams));
     assert_eq!(loaded.scene.integrator.max_depth, None);
+    for name in ["ptracer", "transient_ptracer"] {
+        let Ok(loaded) = cornell_with(&[&format!(r#"integrator={{"type": "{name}"}}"#)]) else {
+            panic!("it loads")
+        };
+        assert_eq!(loaded.scene.integrator.method, Some(MethodName::Light));
+    }
 }
 
 #[test]

@@ -39,7 +39,7 @@ fn a_misspelt_override_gets_the_nearest_name() {
 #[test]
 fn impossible_options_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let cases: [(&[&str], &[&str]); 20] = [
+    let cases: [(&[&str], &[&str]); 22] = [
         (&["--time", "20"], &["unit"]),
         (&["--time=-1s"], &["positive"]),
         (&["--time", "-1s"], &["positive"]),
@@ -55,6 +55,8 @@ fn impossible_options_are_refused() {
         (&["--max-depth", "1", "--min-depth", "2"], &["none counts"]),
         (&["--method", "path", "--radius", "0.1"], &["options of beams"]),
         (&["--method", "beams", "--samples-per-pass", "3"], &["options of path"]),
+        (&["--method", "light", "--radius", "0.1"], &["options of beams"]),
+        (&["--method", "path", "--photons", "9"], &["options of beams"]),
         (&["--method", "beams", "--radius", "0"], &["radius"]),
         (&["--method", "beams", "--radius", "-1"], &["'radius' of the beams must be"]),
         (

@@ -20,7 +20,7 @@ fn help() {
 #[test]
 fn plans() {
     for scene in ["cornell-blocks", "infinite-point", "mirror-caustic", "mirror-caustic-point"] {
-        for method in ["beams", "path"] {
+        for method in ["beams", "path", "light"] {
             let file = format!("validation/scenes/{scene}.json");
             let output = tpb(&root(), ["plan", &file, "--method", method]);
             assert_done(&output);
@@ -30,11 +30,11 @@ fn plans() {
 }
 
 #[test]
-fn without_a_method_both_plans_are_shown_the_default_first() {
+fn without_a_method_all_plans_are_shown_the_default_first() {
     let file = "validation/scenes/cornell-blocks.json";
     let plan = |more: &[&str]| stdout(&tpb(&root(), [&["plan", file], more].concat()));
-    let (path, beams) = (plan(&["--method", "path"]), plan(&["--method", "beams"]));
-    assert_eq!(plan(&[]), format!("{path}\n{beams}"));
+    let [path, beams, light] = ["path", "beams", "light"].map(|name| plan(&["--method", name]));
+    assert_eq!(plan(&[]), format!("{path}\n{beams}\n{light}"));
     assert_eq!(plan(&["--kernel", "2d", "--method", "beams"]).matches("method: ").count(), 1);
 }
 
@@ -49,7 +49,10 @@ fn the_plan_as_json_says_the_same() {
 
 #[test]
 fn reports() {
-    for (method, options) in [("path", &["--method", "path"][..]), ("beams", &FEW)] {
+    let light = &["--method", "light", "--photons", "500"][..];
+    for (method, options) in
+        [("path", &["--method", "path"][..]), ("beams", &FEW[..]), ("light", light)]
+    {
         let folder = tempfile::tempdir().unwrap();
         let mut command = program();
         command.current_dir(root()).arg("render").arg("validation/scenes/cornell-blocks.json");

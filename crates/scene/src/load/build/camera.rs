@@ -105,6 +105,7 @@ pub(super) fn integrator(integrator: &words::Integrator, node: &Node) -> Outcome
         | I::TransientVolpath(d)
         | I::TransientPrbvolpath(d) => (MethodName::Path, d),
         I::PhotonBeams(d) | I::TransientPhotonBeams(d) => (MethodName::Beams, d),
+        I::Ptracer(d) | I::TransientPtracer(d) => (MethodName::Light, d),
     };
     let (max_depth, min_depth) = (depths.max_depth.0, depths.min_depth.get());
     if max_depth.is_some_and(|max| max < min_depth) {

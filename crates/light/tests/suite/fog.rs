@@ -1,0 +1,101 @@
+//! Scattering media: against the path tracer, which works from the other end.
+
+use std::num::NonZeroU32;
+
+use glam::DVec3;
+use tpb_light::{LightOptions, LightTracer};
+use tpb_optics::Rgb;
+use tpb_path::{PathOptions, PathTracer};
+use tpb_scene::{Bsdf, IntegratorSpec, Medium, MediumBoundary, MediumId, Plan, Scene, SceneParts};
+
+use crate::scenes;
+use crate::statistics::{Estimates, estimate, image_and_blocks};
+
+const BLOCKS: usize = 4;
+
+/// A ball of fog with a round lamp in it (a point would make the path tracer's variance infinite),
+/// before a diffuse floor, within a medium that only
+/// absorbs; the eye is outside of the fog.
+fn ball(fog: Medium, integrator: IntegratorSpec) -> Scene {
+    let mut ball = scenes::shape("fog", vec![scenes::sphere(DVec3::ZERO, 1.0, false)], Bsdf::Null);
+    let haze = Some(MediumId(1));
+    ball.boundary = Some(MediumBoundary { interior: Some(MediumId(0)), exterior: haze });
+    let floor = scenes::rectangle([0.0, -1.2, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, -2.0]);
+    let mut absorber = scenes::fog(0.0, 0.1, 0.0);
+    absorber.name = "haze".into();
+    let at = DVec3::new(0.3, 0.4, -0.1);
+    let black = scenes::diffuse(0.0);
+    let mut lamp = scenes::shape("lamp", vec![scenes::sphere(at, 0.2, false)], black);
+    lamp.radiance = Some(Rgb::splat(9.0));
+    Scene::assemble(SceneParts {
+        shapes: vec![ball, lamp, scenes::shape("floor", vec![floor], scenes::diffuse(0.7))],
+        media: vec![fog, absorber],
+        emitters: vec![],
+        background: haze,
+        sensor: scenes::camera(
+            DVec3::new(0.2, 0.6, 3.0),
+            DVec3::new(-0.2, -0.6, -3.0),
+            50.0,
+            (4, 4),
+        ),
+        film: scenes::film(4, 4, 0.5, 4 * BLOCKS),
+        integrator,
+    })
+    .expect("a scene")
+}
+
+fn light<const C: usize>(scene: &Scene, seed: u64, photons: u64, batches: u64) -> Estimates {
+    let plan = Plan::new(scene, &scene.integrator);
+    let options = LightOptions { photons_per_pass: Some(photons) };
+    let method = LightTracer::<C>::new(scene, &plan, scene.integrator, &options);
+    let method = method.expect("options");
+    estimate(&method, &scene.film, (seed, batches), image_and_blocks(BLOCKS))
+}
+
+fn path<const C: usize>(scene: &Scene, seed: u64, samples: u32, batches: u64) -> Estimates {
+    let plan = Plan::new(scene, &scene.integrator);
+    let options = PathOptions { samples_per_pass: NonZeroU32::new(samples) };
+    let method = PathTracer::<C>::new(scene, &plan, scene.integrator, &options);
+    estimate(&method, &scene.film, (seed, batches), image_and_blocks(BLOCKS))
+}
+
+/// Single scattering, double, and the rest; isotropic and forward.
+#[test]
+fn orders_of_scattering_agree_with_the_path_tracer() {
+    for (min, max, g) in [(2, 2, 0.0), (3, 3, -0.5), (2, 7, 0.7)] {
+        let depths = IntegratorSpec {
+            min_depth: min,
+            max_depth: Some(max),
+            rr_depth: 4,
+            ..IntegratorSpec::default()
+        };
+        let scene = ball(scenes::fog(1.2, 1.5, g), depths);
+        let (seed, what) = (10 + u64::from(min), format!("depths {min} to {max}, g {g}"));
+        let light = light::<1>(&scene, seed, 20_000, 40);
+        light.assert_agree(&path::<1>(&scene, seed + 50, 1600, 40), 0.02, &what);
+    }
+}
+
+/// Colour: the mixture over channels; a channel that barely interacts, one that is dense.
+#[test]
+fn coloured_fog_agrees_with_the_path_tracer() {
+    let depths = IntegratorSpec { max_depth: Some(5), ..IntegratorSpec::default() };
+    let fog = scenes::colored_fog([1.0, 0.1, 3.0], [1.1, 0.1, 4.0], 0.3);
+    let scene = ball(fog, depths);
+    let light = light::<3>(&scene, 31, 30_000, 40);
+    light.assert_agree(&path::<3>(&scene, 81, 2500, 40), 0.03, "colour");
+}
+
+/// One and three channels of a grey scene.
+#[test]
+fn grey_in_three_channels_is_grey_in_one() {
+    let depths = IntegratorSpec { max_depth: Some(4), ..IntegratorSpec::default() };
+    let scene = ball(scenes::fog(1.2, 1.5, 0.3), depths);
+    let three = light::<3>(&scene, 41, 20_000, 40);
+    let one = light::<1>(&scene, 42, 20_000, 40);
+    for channel in 0..3 {
+        let means = three.means.iter().skip(channel).step_by(3).copied().collect();
+        let errors = three.errors.iter().skip(channel).step_by(3).copied().collect();
+        one.with(means, errors).assert_agree(&one, 0.02, "grey");
+    }
+}
