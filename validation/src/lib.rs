@@ -9,6 +9,7 @@
 //! * [`equal_time`], [`reference_cube`]: methods against each other at equal time, and the long
 //!   render that both are compared with.
 //! * [`run_time`]: how the error of a method falls with the time it is given.
+//! * [`taps`]: photons at given optical path lengths, for what no camera sees.
 //! * [`suite`]: running many; [`report`], [`pages`]: what is printed and what is kept of it.
 
 mod artefacts;
@@ -29,6 +30,7 @@ pub mod sabotage;
 pub mod scenes;
 pub mod statistics;
 pub mod suite;
+pub mod taps;
 
 pub use error::{Result, ValidationError};
 pub use tpb_render::with_threads;

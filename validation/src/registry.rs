@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use crate::experiment::{Effort, Experiment, Kind};
 use crate::experiments::{
-    calibration, echoes, energy, equal_time, fresnel, kernels, mirrors, refraction, samplers,
-    single_scatter, sphere, tables,
+    calibration, echoes, energy, equal_time, fresnel, infinite_medium, kernels, mirrors,
+    refraction, samplers, single_scatter, sphere, tables,
 };
 use crate::sabotage::Twin;
 use crate::suite::SUITE_LEVEL;
@@ -44,6 +44,7 @@ fn sound(effort: Effort) -> Experiments {
         echoes::all(),
         refraction::all(effort),
         mirrors::all(effort),
+        infinite_medium::all(effort),
         sphere::all(effort),
         single_scatter::all(effort),
         equal_time::all(effort),

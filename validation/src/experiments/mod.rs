@@ -5,6 +5,7 @@ pub mod echoes;
 pub mod energy;
 pub mod equal_time;
 pub mod fresnel;
+pub mod infinite_medium;
 pub mod kernels;
 mod marching;
 pub mod mirrors;
