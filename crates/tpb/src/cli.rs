@@ -26,6 +26,8 @@ pub(crate) enum Command {
     Plan(Box<PlanArgs>),
     /// Check a result and print what is in it
     Info(InfoArgs),
+    /// Print or draw an analytic solution, at a point or over a range of an input
+    Reference(ReferenceArgs),
     /// Print the JSON schema of scene files
     Schema,
 }
@@ -110,6 +112,71 @@ pub(crate) struct PlanArgs {
 pub(crate) struct InfoArgs {
     /// A result folder, or an npz file of arrays
     pub(crate) result: PathBuf,
+}
+
+/// `tpb reference`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  tpb reference --list
+  tpb reference ballistic_point_fluence --set energy=1 --set sigma_t=0.5 --set r=2
+  tpb reference diffusion_infinite --set r=5 --set mu_a=0.02 --set mu_s_prime=2 --set speed=1 \\
+      --over time=1..100:400 --log-x --log-y -o curve.svg
+  tpb reference sphere_centre_radiance_bins --set albedo=0.7 --set order=all --over bins=0..12:120
+
+Where a solution has no value, as on a wavefront, a cell is empty (JSON: null).
+Exit codes: 0 at least one value; 2 none, bad usage, or a file that cannot be written.")]
+pub(crate) struct ReferenceArgs {
+    /// The solution; --list names them all
+    #[arg(required_unless_present = "list")]
+    pub(crate) name: Option<String>,
+
+    /// List the solutions (or only this one) with their inputs, units and validity
+    #[arg(long, conflicts_with_all = ["set", "over", "quantity", "plot"])]
+    pub(crate) list: bool,
+
+    /// An input, as JSON or a word: energy=1, beam_origin=[0,0,0], order=all
+    #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
+    pub(crate) set: Vec<String>,
+
+    /// The input to vary, from first to last value; bins=A..B:N sets t0 and t1 to N bins
+    #[arg(long, value_name = "KEY=A..B[:N]", allow_hyphen_values = true)]
+    pub(crate) over: Option<String>,
+
+    /// Space the values of --over, and the horizontal axis, by their logarithm
+    #[arg(long, requires = "over")]
+    pub(crate) log_x: bool,
+
+    /// Draw the vertical axis by its logarithm
+    #[arg(long, requires = "over")]
+    pub(crate) log_y: bool,
+
+    /// Only this quantity of the solution [default: all that it has]
+    #[arg(long, value_name = "Q")]
+    pub(crate) quantity: Option<String>,
+
+    /// Format of the output [default: that of the name of -o, or csv]
+    #[arg(long)]
+    pub(crate) format: Option<ReferenceFormat>,
+
+    /// Also draw a plot, as SVG
+    #[arg(long, value_name = "FILE", requires = "over")]
+    pub(crate) plot: Option<PathBuf>,
+
+    /// Write to a file instead of standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// How values are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReferenceFormat {
+    /// A table; lines that begin with # say what it is
+    Csv,
+    /// An object
+    Json,
+    /// A plot
+    Svg,
 }
 
 /// Scene and method.

@@ -6,6 +6,7 @@
 //! * [`cli`], [`values`]: the command line, and values with units on it;
 //! * [`prepare`]: what `render` and `plan` share — the scene, its plan, the method;
 //! * [`folder`]: the result folder, safe against accidents;
+//! * [`mod@reference`]: analytic solutions;
 //! * [`watch`]: progress bar and ctrl-c;
 //! * [`failure`], [`mod@print`]: all that is printed goes through these.
 //!
@@ -19,6 +20,7 @@ mod info;
 mod plan;
 mod prepare;
 mod print;
+mod reference;
 mod render;
 mod schema;
 mod summary;
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Info(args) => info::run(args),
+        Command::Reference(args) => reference::run(args),
         Command::Schema => schema::run(),
     };
     match outcome {

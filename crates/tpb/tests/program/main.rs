@@ -3,6 +3,7 @@
 mod errors;
 mod files;
 mod interrupt;
+mod reference;
 mod renders;
 mod snapshots;
 
