@@ -18,6 +18,7 @@ pub mod contrasts;
 pub mod cube;
 pub mod equal_time;
 mod error;
+pub mod expected;
 pub mod experiment;
 pub mod experiments;
 pub mod measure;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use crate::experiment::{Effort, Experiment, Kind};
 use crate::experiments::{
-    calibration, echoes, energy, equal_time, fresnel, infinite_medium, kernels, mirrors,
-    refraction, samplers, single_scatter, sphere, tables,
+    blur, calibration, echoes, energy, equal_time, even_spread, fresnel, infinite_medium, kernels,
+    mirrors, refraction, samplers, single_scatter, sphere, tables,
 };
 use crate::sabotage::Twin;
 use crate::suite::SUITE_LEVEL;
@@ -47,6 +47,8 @@ fn sound(effort: Effort) -> Experiments {
         infinite_medium::all(effort),
         sphere::all(effort),
         single_scatter::all(effort),
+        even_spread::all(),
+        blur::all(effort),
         equal_time::all(effort),
     ]
     .concat()

@@ -1,6 +1,8 @@
 //! Integration without closed forms: which parts of a line are covered is found by looking at many
 //! points of it, their ends by bisection, and the integral over a part by a composite rule.
 
+use std::f64::consts::PI;
+
 /// The runs of `candidates` that are covered, their ends found by bisection.
 pub(super) fn covered_parts(covered: &impl Fn(f64) -> bool, candidates: &[f64]) -> Vec<(f64, f64)> {
     let mut parts = Vec::new();
@@ -48,9 +50,31 @@ pub(super) fn gauss(f: impl Fn(f64) -> f64, start: f64, end: f64) -> f64 {
         .sum()
 }
 
+/// The midpoint rule in the angle θ of u = start + (end − start) sin²(θ/2), in which square roots at
+/// the ends are smooth. Kinks inside cost (π/points)²/12 of themselves, 3e-10.
+pub(super) fn midpoints(f: impl Fn(f64) -> f64, start: f64, end: f64) -> f64 {
+    let points = 50_000;
+    let step = PI / f64::from(points);
+    (0..points)
+        .map(|i| {
+            let (sin, cos) = (0.5 * step * (f64::from(i) + 0.5)).sin_cos();
+            f(start + (end - start) * sin * sin) * (end - start) * sin * cos * step
+        })
+        .sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn half_ellipses_with_a_kink_are_integrated_to_nine_digits() {
+        let f = |u: f64| ((1.0 - u) * (1.0 + u)).sqrt().min(0.8);
+        // Twice 0.8 · 0.6 and what is left of the circle beyond 0.6.
+        let rest = 0.25 * PI - 0.5 * 0.6_f64.asin() - 0.24;
+        let exact = 2.0 * (0.48 + rest);
+        assert!((midpoints(f, -1.0, 1.0) / exact - 1.0).abs() < 1e-9);
+    }
 
     #[test]
     fn parts_are_found_with_their_ends() {

@@ -1,9 +1,11 @@
 //! The questions, one module for each subject.
 
+pub mod blur;
 pub mod calibration;
 pub mod echoes;
 pub mod energy;
 pub mod equal_time;
+pub mod even_spread;
 pub mod fresnel;
 pub mod infinite_medium;
 pub mod kernels;
