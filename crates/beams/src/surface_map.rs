@@ -40,26 +40,25 @@ pub struct SurfaceMap<const C: usize> {
 
 impl<const C: usize> SurfaceMap<C> {
     /// For density estimates within `radius`.
-    pub fn new(unsorted: Vec<SurfacePhoton<C>>, radius: f64) -> Self {
-        let buckets = unsorted.len().next_power_of_two().max(1);
+    pub fn new(mut photons: Vec<SurfacePhoton<C>>, radius: f64) -> Self {
+        let buckets = photons.len().next_power_of_two().max(1);
         let bucket = |p: &SurfacePhoton<C>| bucket_of(cell_of(p.position, radius), buckets);
         let mut starts = vec![0_u32; buckets + 1];
-        for photon in &unsorted {
+        for photon in &photons {
             starts[bucket(photon) + 1] += 1;
         }
         for b in 0..buckets {
             starts[b + 1] += starts[b];
         }
-        // A stable counting sort.
+        // A stable counting sort, in place: photons are held once.
         let mut next = starts.clone();
-        let mut order = vec![0_u32; unsorted.len()];
-        for (index, photon) in unsorted.iter().enumerate() {
+        let mut order = vec![0_u32; photons.len()];
+        for (index, photon) in photons.iter().enumerate() {
             let slot = &mut next[bucket(photon)];
             order[*slot as usize] = index as u32;
             *slot += 1;
         }
-        let photons: Vec<_> = order.iter().map(|&index| unsorted[index as usize]).collect();
-        drop(unsorted);
+        permute(&mut photons, order);
         let positions = photons.iter().map(|photon| photon.position).collect();
         Self { photons, positions, starts, radius }
     }
@@ -113,6 +112,23 @@ impl<const C: usize> SurfaceMap<C> {
                 covered_area(&flat, self.radius)
             }),
             Primitive::Cylinder(_) => disc,
+        }
+    }
+}
+
+/// Brings `items[order[i]]` to place i, for all i, along the cycles of the permutation.
+fn permute<T: Copy>(items: &mut [T], mut order: Vec<u32>) {
+    for first in 0..items.len() {
+        let (held, mut place) = (items[first], first);
+        loop {
+            // A place that is done points to itself; its cycle has been closed.
+            let source = std::mem::replace(&mut order[place], place as u32) as usize;
+            if source == first {
+                items[place] = held;
+                break;
+            }
+            items[place] = items[source];
+            place = source;
         }
     }
 }
@@ -198,6 +214,20 @@ fn edge_area(p: DVec2, q: DVec2, radius: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn items_are_permuted_in_place() {
+        let mut rng = tpb_optics::Stream::new(1, 2, 3);
+        for count in [0_u32, 1, 2, 3, 10, 1000] {
+            let mut order: Vec<u32> = (0..count).collect();
+            for last in (1..order.len()).rev() {
+                order.swap(last, rng.index(last + 1));
+            }
+            let mut items: Vec<u32> = (0..count).map(|i| 7 * i).collect();
+            permute(&mut items, order.clone());
+            assert!(items.iter().zip(&order).all(|(item, index)| *item == 7 * index));
+        }
+    }
 
     #[test]
     fn the_covered_area_is_what_a_fine_grid_counts() {

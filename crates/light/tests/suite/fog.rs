@@ -71,8 +71,8 @@ fn orders_of_scattering_agree_with_the_path_tracer() {
         };
         let scene = ball(scenes::fog(1.2, 1.5, g), depths);
         let (seed, what) = (10 + u64::from(min), format!("depths {min} to {max}, g {g}"));
-        let light = light::<1>(&scene, seed, 20_000, 40);
-        light.assert_agree(&path::<1>(&scene, seed + 50, 1600, 40), 0.02, &what);
+        let light = light::<1>(&scene, seed, 12_000, 32);
+        light.assert_agree(&path::<1>(&scene, seed + 50, 900, 32), 0.03, &what);
     }
 }
 
@@ -82,8 +82,8 @@ fn coloured_fog_agrees_with_the_path_tracer() {
     let depths = IntegratorSpec { max_depth: Some(5), ..IntegratorSpec::default() };
     let fog = scenes::colored_fog([1.0, 0.1, 3.0], [1.1, 0.1, 4.0], 0.3);
     let scene = ball(fog, depths);
-    let light = light::<3>(&scene, 31, 30_000, 40);
-    light.assert_agree(&path::<3>(&scene, 81, 2500, 40), 0.03, "colour");
+    let light = light::<3>(&scene, 31, 15_000, 32);
+    light.assert_agree(&path::<3>(&scene, 81, 1600, 32), 0.04, "colour");
 }
 
 /// One and three channels of a grey scene.
@@ -91,8 +91,8 @@ fn coloured_fog_agrees_with_the_path_tracer() {
 fn grey_in_three_channels_is_grey_in_one() {
     let depths = IntegratorSpec { max_depth: Some(4), ..IntegratorSpec::default() };
     let scene = ball(scenes::fog(1.2, 1.5, 0.3), depths);
-    let three = light::<3>(&scene, 41, 20_000, 40);
-    let one = light::<1>(&scene, 42, 20_000, 40);
+    let three = light::<3>(&scene, 41, 10_000, 32);
+    let one = light::<1>(&scene, 42, 10_000, 32);
     for channel in 0..3 {
         let means = three.means.iter().skip(channel).step_by(3).copied().collect();
         let errors = three.errors.iter().skip(channel).step_by(3).copied().collect();
