@@ -1,6 +1,6 @@
 //! One estimator against one expected cube: batches in, outcome with a z map out.
 
-use tpb_film::TimeAxis;
+use tpb_film::{Layout, TimeAxis};
 use tpb_scene::Scene;
 
 use crate::contrasts::{LinearContrast, targets};
@@ -36,21 +36,40 @@ impl Comparison<'_> {
     /// Renders the scene's film and judges; a twin's defect that acts on window or estimate is
     /// brought about here.
     pub fn run(self, context: &Context) -> Result<Outcome> {
-        let mut values = Batches::new();
-        let mut cells = CellMoments::new(self.expected.values.len());
-        let mut sums = CellMoments::new(self.expected.bins);
         let layout = context.layout(&self.scene.film)?;
+        let mut found = Found::new(self.expected);
         batches(self.scene, &self.estimator, layout, &self.plan, |cube| {
-            let cube = &self.spoil(cube, context);
-            values.push(self.contrasts.iter().map(|c| c.value(cube)).collect());
-            cells.add(&cube.values);
-            sums.add(&cube.sum_of_pixels());
+            found.add(&self.spoil(cube, context), self.contrasts);
         })?;
+        Ok(self.judge(found, layout))
+    }
+
+    /// The same, but batches are made only if the context does not remember them. `key` names
+    /// scene and estimator, without a twin's defect.
+    pub fn run_remembered(self, context: &Context, key: &str) -> Result<Outcome> {
+        let layout = context.layout(&self.scene.film)?;
+        let key = format!("{key} {:?} {layout:?} {:?}", self.plan, context.defect_of_the_scene());
+        let cubes = context.memory.recall(&key, || {
+            let mut cubes = Vec::new();
+            batches(self.scene, &self.estimator, layout, &self.plan, |cube| {
+                cubes.push(cube.clone());
+            })?;
+            Ok(cubes)
+        })?;
+        let mut found = Found::new(self.expected);
+        for cube in cubes.iter() {
+            found.add(&self.spoil(cube, context), self.contrasts);
+        }
+        Ok(self.judge(found, layout))
+    }
+
+    fn judge(&self, found: Found, layout: Layout) -> Outcome {
         let targets = targets(self.contrasts, self.expected, self.coarser);
-        let mut outcome: Outcome = judge(&targets, &values, &self.criterion).into();
-        outcome.z_map = Some(cells.z_map(self.expected));
-        outcome.bins = layout.time.map(|axis| sums.plot(&axis, self.expected.sum_of_pixels()));
-        Ok(outcome)
+        let mut outcome: Outcome = judge(&targets, &found.values, &self.criterion).into();
+        outcome.z_map = Some(found.cells.z_map(self.expected));
+        let expected = self.expected.sum_of_pixels();
+        outcome.bins = layout.time.map(|axis| found.sums.plot(&axis, expected));
+        outcome
     }
 
     fn spoil(&self, cube: &Cube, context: &Context) -> Cube {
@@ -64,6 +83,26 @@ impl Comparison<'_> {
             }
         }
         cube
+    }
+}
+
+/// What batches have in them.
+struct Found {
+    values: Batches,
+    cells: CellMoments,
+    sums: CellMoments,
+}
+
+impl Found {
+    fn new(expected: &Cube) -> Self {
+        let cells = CellMoments::new(expected.values.len());
+        Self { values: Batches::new(), cells, sums: CellMoments::new(expected.bins) }
+    }
+
+    fn add(&mut self, cube: &Cube, contrasts: &[LinearContrast]) {
+        self.values.push(contrasts.iter().map(|c| c.value(cube)).collect());
+        self.cells.add(&cube.values);
+        self.sums.add(&cube.sum_of_pixels());
     }
 }
 

@@ -10,6 +10,7 @@
 //! ([`crate::sabotage`]).
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +21,7 @@ use crate::equal_time::EqualTime;
 use crate::error::Result;
 use crate::experiments::calibration::Rate;
 use crate::measure;
+use crate::memory::Memory;
 use crate::registry;
 use crate::sabotage::Sabotage;
 use crate::statistics::{Contrast, Criterion, Finding, Judgement};
@@ -43,7 +45,7 @@ impl Effort {
 }
 
 /// What all experiments of a run share.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Context {
     /// How much work to do.
     pub effort: Effort,
@@ -57,13 +59,23 @@ pub struct Context {
     pub level: f64,
     /// The defect that a twin's run must bring about.
     pub sabotage: Option<Sabotage>,
+    /// Renders that are wanted again.
+    pub memory: Arc<Memory>,
 }
 
 impl Context {
     /// A sound context on the data that ship with this crate.
     pub fn new(effort: Effort, seed: u64, out: PathBuf) -> Self {
         let data = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-        Self { effort, seed, out, data, level: registry::level(effort), sabotage: None }
+        Self {
+            effort,
+            seed,
+            out,
+            data,
+            level: registry::level(effort),
+            sabotage: None,
+            memory: Arc::default(),
+        }
     }
 
     /// What is asked of estimators without bias: a margin of 0.5 %.
@@ -88,6 +100,11 @@ impl Context {
     pub fn layout(&self, film: &FilmSpec) -> Result<Layout> {
         let width = film.time.map_or(0.0, |time| time.bin_width_opl);
         measure::layout(film, self.sabotage.map_or(0.0, |s| s.window_shift(width)))
+    }
+
+    /// The twin's defect if it acts on the scene, so that what is rendered differs.
+    pub fn defect_of_the_scene(&self) -> Option<Sabotage> {
+        self.sabotage.filter(|sabotage| sabotage.acts_on_the_scene())
     }
 
     /// The twin's factor on estimates; 1 if its defect acts elsewhere.

@@ -4,8 +4,10 @@
 //! * [`statistics`]: batches, tests, equivalence, ratios, the split of an error.
 //! * [`experiment`]: what an experiment is; [`sabotage`]: its sabotaged twins; [`registry`]: all.
 //! * [`experiments`]: the questions themselves, one module for each subject.
+//! * [`matrix`]: scenes, methods and media, each with each.
 //! * [`cube`], [`contrasts`], [`measure`], [`comparison`]: time-resolved images as numbers, reduced to the few
 //!   that are judged, batch by batch.
+//! * [`memory`]: renders that are wanted again.
 //! * [`equal_time`], [`reference_cube`]: methods against each other at equal time, and the long
 //!   render that both are compared with.
 //! * [`run_time`]: how the error of a method falls with the time it is given.
@@ -21,7 +23,9 @@ mod error;
 pub mod expected;
 pub mod experiment;
 pub mod experiments;
+pub mod matrix;
 pub mod measure;
+pub mod memory;
 pub mod pages;
 pub mod reference_cube;
 pub mod registry;

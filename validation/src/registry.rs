@@ -7,8 +7,9 @@ use std::sync::Arc;
 use crate::experiment::{Effort, Experiment, Kind};
 use crate::experiments::{
     blur, calibration, echoes, energy, equal_time, even_spread, fresnel, infinite_medium, kernels,
-    mirrors, refraction, samplers, single_scatter, sphere, tables,
+    mirrors, refraction, samplers, sphere, tables,
 };
+use crate::matrix;
 use crate::sabotage::Twin;
 use crate::suite::SUITE_LEVEL;
 
@@ -46,7 +47,7 @@ fn sound(effort: Effort) -> Experiments {
         mirrors::all(effort),
         infinite_medium::all(effort),
         sphere::all(effort),
-        single_scatter::all(effort),
+        matrix::all(effort),
         even_spread::all(),
         blur::all(effort),
         equal_time::all(effort),
@@ -85,10 +86,7 @@ mod tests {
     #[test]
     fn every_kind_of_sabotage_is_tried() {
         let names: Vec<String> = experiments(Effort::Full).iter().map(|e| e.name()).collect();
-        // The matrix adds cosines and null boundaries.
-        for label in
-            Sabotage::LABELS.into_iter().filter(|l| !["cosine", "null-segment"].contains(l))
-        {
+        for label in Sabotage::LABELS {
             let tried = names.iter().any(|name| name.starts_with(&format!("control/{label}/")));
             assert!(tried, "{label}");
         }

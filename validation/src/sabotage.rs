@@ -115,6 +115,11 @@ impl Sabotage {
         }
     }
 
+    /// Whether it changes what is rendered, window apart.
+    pub fn acts_on_the_scene(self) -> bool {
+        matches!(self, Self::SigmaS(_) | Self::Transmittance(_))
+    }
+
     /// How much later the film's window must be, for bins of this width \[m\].
     pub fn window_shift(self, bin_width_opl: f64) -> f64 {
         match self {

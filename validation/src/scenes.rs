@@ -99,6 +99,17 @@ pub fn unit_point(position: DVec3) -> EmitterPart {
     }
 }
 
+/// A sphere that bounds nothing: light crosses it unchanged.
+pub fn null_sphere(centre: DVec3, radius: f64) -> ShapePart {
+    ShapePart {
+        name: "null".into(),
+        primitives: vec![Primitive::Sphere(Sphere { centre, radius, flipped: false })],
+        bsdf: Bsdf::Null,
+        boundary: None,
+        radiance: None,
+    }
+}
+
 /// Infinite fog with a point light of unit power.
 pub fn infinite_fog(context: &Context, view: &View, fog: &Fog, light: DVec3) -> Result<Scene> {
     let mut parts = view.parts();

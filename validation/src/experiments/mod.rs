@@ -15,6 +15,5 @@ pub mod refraction;
 pub mod samplers;
 mod screen;
 mod sights;
-pub mod single_scatter;
 pub mod sphere;
 pub mod tables;
