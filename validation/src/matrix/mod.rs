@@ -60,9 +60,9 @@ pub fn all(effort: Effort) -> Experiments {
 const QUICK: [&str; 7] = [
     "matrix/lamp/coloured/path",
     "matrix/floor/absorbing/path",
-    "matrix/fog/isotropic/path",
-    "matrix/fog/forward/beams-1d",
-    "matrix/fog/isotropic/beams-2d",
+    "matrix/fog/forward/path",
+    "matrix/fog/isotropic/beams-1d",
+    "matrix/fog/backward/beams-2d",
     "matrix/ball/coloured/path",
     "matrix/room/isotropic/beams-1d",
 ];

@@ -41,7 +41,7 @@ impl Pair {
     }
 
     fn render(&self, player: &Player, seed: u64, context: &Context) -> Result<Cubes> {
-        let budget = self.case.budget(player, context.effort);
+        let budget = self.case.budget(player, self.medium, context.effort);
         let scene = context.assemble(self.case.parts(&self.case.view(), self.medium))?;
         let layout = context.layout(&scene.film)?;
         let plan = BatchPlan { batches: BATCHES, passes: budget.passes, seed };

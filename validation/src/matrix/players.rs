@@ -16,6 +16,8 @@ pub enum Blur {
     OneD,
     /// A disc across the beam.
     TwoD,
+    /// A sphere swept along the beam.
+    ThreeD,
 }
 
 /// How much a player may do in a batch.
@@ -56,15 +58,29 @@ pub struct Player {
     pub family: Family,
 }
 
-/// All players. Variants of one kernel share all but their last step: they play where the medium is
-/// isotropic or coloured.
-pub const PLAYERS: [Player; 6] = [
+/// Which kernels of beams play in a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernels {
+    /// One speaks for all: what is seen is no kernel's work.
+    Alike,
+    /// 1D in every medium, 2D and 3D in two of them.
+    Plain,
+    /// Each in every medium; short beams and even spreading, which share all but their last step
+    /// with others, in two of them.
+    All,
+}
+
+/// All players.
+pub const PLAYERS: [Player; 9] = [
     Player { name: "path", family: Family::Path },
     beams("beams-1d", Blur::OneD, BeamLength::Long, Temporal::Exact),
     beams("beams-1d-short", Blur::OneD, BeamLength::Short, Temporal::Exact),
     beams("beams-2d", Blur::TwoD, BeamLength::Long, Temporal::Exact),
     beams("beams-2d-short", Blur::TwoD, BeamLength::Short, Temporal::Exact),
     beams("beams-2d-even", Blur::TwoD, BeamLength::Long, Temporal::Even),
+    beams("beams-3d", Blur::ThreeD, BeamLength::Long, Temporal::Exact),
+    beams("beams-3d-short", Blur::ThreeD, BeamLength::Short, Temporal::Exact),
+    beams("beams-3d-even", Blur::ThreeD, BeamLength::Long, Temporal::Even),
 ];
 
 const fn beams(name: &'static str, blur: Blur, length: BeamLength, temporal: Temporal) -> Player {
@@ -90,10 +106,14 @@ impl Player {
 
     /// Whether there is a row of this case and medium.
     pub fn plays(&self, case: &dyn Case, medium: &MatrixMedium) -> bool {
-        let variants = case.tries_kernels() && ["isotropic", "coloured"].contains(&medium.name);
-        // Where kernels do not matter, one player speaks for all beams.
-        let one_for_all = case.tries_kernels() || !matches!(self.blur(), Some(Blur::TwoD));
-        case.admits(self.family) && one_for_all && (!self.is_variant() || variants)
+        let several = ["isotropic", "coloured"].contains(&medium.name);
+        let simple = !self.is_variant() && self.blur().is_none_or(|blur| blur == Blur::OneD);
+        let in_turn = match case.kernels() {
+            Kernels::Alike => simple,
+            Kernels::Plain => simple || several && !self.is_variant(),
+            Kernels::All => several || !self.is_variant(),
+        };
+        case.admits(self.family) && in_turn
     }
 
     /// How it blurs what is scattered in media.
@@ -119,6 +139,7 @@ impl Player {
                 kernel: Some(match blur {
                     Blur::OneD => KernelChoice::OneD,
                     Blur::TwoD => KernelChoice::TwoD,
+                    Blur::ThreeD => KernelChoice::ThreeD,
                 }),
                 length: Some(length),
                 temporal: Some(temporal),

@@ -86,7 +86,7 @@ impl Experiment for Row {
     }
 
     fn description(&self) -> String {
-        let target = match (self.player.blur(), self.case.tries_kernels()) {
+        let target = match (self.player.blur(), self.case.is_blurred()) {
             (Some(_), true) => "expected blur",
             _ => "value",
         };
@@ -101,13 +101,13 @@ impl Experiment for Row {
     fn run(&self, context: &Context) -> Result<Outcome> {
         let (case, medium, player) = (&*self.case, self.medium, self.player);
         let name = self.name();
-        let budget = case.budget(player, context.effort);
+        let budget = case.budget(player, self.medium, context.effort);
         let scene = context.assemble(case.parts(&case.view(), medium))?;
         let expected = context
             .memory
             .recall(&format!("expected of {name}"), || self.expected(budget.radius))?;
         let contrasts = contrasts(case, medium, player, &expected[0]);
-        let blurred = player.blur().is_some() && case.tries_kernels();
+        let blurred = player.blur().is_some() && case.is_blurred();
         Comparison {
             scene: &scene,
             estimator: player.estimator(&budget),

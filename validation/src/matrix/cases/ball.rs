@@ -128,7 +128,7 @@ impl Case for Ball {
         Ok(Expected { fine: cube(4)?, coarse: cube(3)? })
     }
 
-    fn budget(&self, player: &Player, effort: Effort) -> Budget {
+    fn budget(&self, player: &Player, _: &MatrixMedium, effort: Effort) -> Budget {
         let passes = if player.is_baseline() { effort.pick(1, 2) } else { effort.pick(4, 8) };
         Budget { paths: 10_000, photons: 100_000, passes, radius: 0.1 }
     }

@@ -14,13 +14,14 @@ use tpb_reference::ReferenceError;
 use tpb_reference::beams::expected_blur::{Blur1dBin, expected_blur_1d_bins};
 use tpb_reference::beams::expected_blur_disc::{Blur2dBin, expected_blur_2d_bins};
 use tpb_reference::beams::expected_blur_disc_hg::{Blur2dHgBin, expected_blur_2d_hg_bins};
+use tpb_reference::beams::expected_blur_sphere::{Blur3dBin, expected_blur_3d_bins};
 use tpb_reference::single_scattering::{SingleScatterBin, single_scatter_radiance_bins};
 use tpb_scene::{IntegratorSpec, MediumId, SceneParts, TimeSpec};
 
 use super::{Budget, Case, Channel, Family, MatrixMedium, Player};
 use crate::error::Result;
 use crate::experiment::Effort;
-use crate::matrix::players::Blur;
+use crate::matrix::players::{Blur, Kernels};
 use crate::matrix::view::{Expected, Frame, gauss};
 use crate::sabotage::Sabotage;
 use crate::scenes::{View, only_depth, unit_point};
@@ -76,6 +77,18 @@ fn bin(
             t0,
             t1,
         }),
+        Some((Blur::ThreeD, radius)) => expected_blur_3d_bins(&Blur3dBin {
+            energy,
+            sigma_s,
+            sigma_t,
+            g,
+            speed,
+            ray_offset,
+            source_z,
+            radius,
+            t0,
+            t1,
+        }),
         Some((Blur::TwoD, radius)) => expected_blur_2d_hg_bins(&Blur2dHgBin {
             energy,
             sigma_s,
@@ -117,8 +130,8 @@ impl Case for Fog {
         true
     }
 
-    fn tries_kernels(&self) -> bool {
-        true
+    fn kernels(&self) -> Kernels {
+        Kernels::All
     }
 
     fn parts(&self, view: &View, medium: &MatrixMedium) -> SceneParts {
@@ -144,8 +157,13 @@ impl Case for Fog {
         Ok(Expected { fine: cube(4)?, coarse: cube(3)? })
     }
 
-    fn budget(&self, player: &Player, effort: Effort) -> Budget {
-        let passes = if player.is_baseline() { effort.pick(1, 2) } else { effort.pick(6, 10) };
+    fn budget(&self, player: &Player, medium: &MatrixMedium, effort: Effort) -> Budget {
+        // Few photons are deflected much where the phase function is peaked.
+        let passes = match (player.is_baseline(), medium.name) {
+            (true, _) => effort.pick(1, 2),
+            (false, "forward") => effort.pick(16, 25),
+            (false, _) => effort.pick(6, 10),
+        };
         Budget { paths: 10_000, photons: 40_000, passes, radius: RADIUS }
     }
 

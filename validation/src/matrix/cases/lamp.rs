@@ -77,7 +77,7 @@ impl Case for Lamp {
         Ok(Expected { fine: cube(800), coarse: cube(500) })
     }
 
-    fn budget(&self, _: &Player, effort: Effort) -> Budget {
+    fn budget(&self, _: &Player, _: &MatrixMedium, effort: Effort) -> Budget {
         Budget { paths: effort.pick(1000, 2000), photons: 10_000, passes: 1, radius: 0.1 }
     }
 

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use tpb_scene::{IntegratorSpec, SceneParts};
 
 use super::medium::{Channel, MatrixMedium};
-use super::players::{Blur, Budget, Family, Player};
+use super::players::{Blur, Budget, Family, Kernels, Player};
 use super::view::{Expected, Frame};
 use crate::error::{Result, ValidationError};
 use crate::experiment::Effort;
@@ -38,9 +38,14 @@ pub trait Case: Send + Sync {
     /// Whether players of a family see what is seen here, with finite variance.
     fn admits(&self, family: Family) -> bool;
 
-    /// Whether the kernel of beams matters.
-    fn tries_kernels(&self) -> bool {
-        false
+    /// Which kernels of beams play.
+    fn kernels(&self) -> Kernels {
+        Kernels::Alike
+    }
+
+    /// Whether what beams estimate is blurred.
+    fn is_blurred(&self) -> bool {
+        self.kernels() != Kernels::Alike
     }
 
     /// Whether [`Case::expected`] has a value.
@@ -57,7 +62,7 @@ pub trait Case: Send + Sync {
     }
 
     /// What a player may do in a batch.
-    fn budget(&self, player: &Player, effort: Effort) -> Budget;
+    fn budget(&self, player: &Player, medium: &MatrixMedium, effort: Effort) -> Budget;
 
     /// Blocks of pixels.
     fn groups(&self) -> Vec<(String, Vec<usize>)> {

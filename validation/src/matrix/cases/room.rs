@@ -14,6 +14,7 @@ use tpb_scene::{
 
 use super::{Budget, Case, Family, MatrixMedium, Player};
 use crate::experiment::Effort;
+use crate::matrix::players::Kernels;
 use crate::matrix::view::Frame;
 use crate::sabotage::Sabotage;
 use crate::scenes::{View, unit_point};
@@ -60,8 +61,8 @@ impl Case for Room {
         true
     }
 
-    fn tries_kernels(&self) -> bool {
-        true
+    fn kernels(&self) -> Kernels {
+        Kernels::Plain
     }
 
     fn has_exact_value(&self) -> bool {
@@ -93,7 +94,7 @@ impl Case for Room {
         parts
     }
 
-    fn budget(&self, player: &Player, effort: Effort) -> Budget {
+    fn budget(&self, player: &Player, _: &MatrixMedium, effort: Effort) -> Budget {
         if player.is_baseline() {
             Budget { paths: 10_000, photons: 0, passes: effort.pick(1, 3), radius: RADIUS }
         } else {
