@@ -4,6 +4,10 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use std::hint::black_box;
 use tpb_reference::dwell::{DwellSingleScatter, dwell_single_scatter_radiance};
 use tpb_reference::error::Result;
+use tpb_reference::infinite_medium::{
+    PointPulse, PointPulseBin, SincMoment, infinite_medium_sinc_moment, point_pulse_fluence,
+    point_pulse_fluence_bins,
+};
 use tpb_reference::single_scattering::{
     OnceScatteredBin, OnceScatteredHg, SingleScatter, SingleScatterBin,
     once_scattered_fluence_bins, once_scattered_fluence_hg, single_scatter_radiance,
@@ -98,13 +102,34 @@ fn dwell_radiance(g: f64) -> f64 {
     })
 }
 
+/// All orders at once, at r = 2 and an albedo of 0.9.
+fn point_pulse(_g: f64) -> f64 {
+    curve(|time, _| point_pulse_fluence(&PointPulse { r: 2.0, time, albedo: 0.9 }))
+}
+
+fn point_pulse_bins(_g: f64) -> f64 {
+    curve(|t0, t1| point_pulse_fluence_bins(&PointPulseBin { r: 2.0, t0, t1, albedo: 0.9 }))
+}
+
+fn sinc_moment(g: f64) -> f64 {
+    curve(|time, _| {
+        infinite_medium_sinc_moment(&SincMoment { g, k: 1.0, time, sigma_s: 0.9, sigma_a: 0.1 })
+    })
+}
+
+/// A name, the sum of a curve for a mean cosine, and the mean cosines.
+type Curve = (&'static str, fn(f64) -> f64, &'static [f64]);
+
 fn reference(criterion: &mut Criterion) {
-    let solutions: [(&str, fn(f64) -> f64, &[f64]); 5] = [
+    let solutions: [Curve; 8] = [
         ("single_scatter_radiance", radiance, &[0.0, 0.9]),
         ("single_scatter_radiance_bins", radiance_bins, &[0.0, 0.9]),
         ("once_scattered_fluence_hg", fluence, &[0.5, 0.9]),
         ("once_scattered_fluence_bins", fluence_bins, &[0.0]),
         ("dwell_single_scatter_radiance", dwell_radiance, &[0.0, 0.9]),
+        ("point_pulse_fluence", point_pulse, &[0.0]),
+        ("point_pulse_fluence_bins", point_pulse_bins, &[0.0]),
+        ("infinite_medium_sinc_moment", sinc_moment, &[0.0, 0.9]),
     ];
     let mut group = criterion.benchmark_group("reference");
     group.throughput(Throughput::Elements(CURVE as u64));

@@ -2,7 +2,7 @@
 //!
 //! An isotropic source on the plane x = 0 emits 1 J per m² (or one photon per unit area) at time 0. In units of
 //! the mean free path, with v = 1 and the albedo c, the fluence rate of scattered light at |x| < t is
-//! (Ganapol 2001, LA-UR-01-1854, AZURV1; notation of [`saddle`](super::saddle))
+//! (Ganapol 2001, LA-UR-01-1854, AZURV1; notation of `saddle`)
 //!
 //! > φ = (c m e^(−t)/4π) ∫₀^∞ Re ξ² e^(c t m ξ/2) ds,   m = 1 − (x/t)²,
 //!

@@ -5,7 +5,7 @@
 //! that of the plane pulse with x, at x = r < t (Ganapol 2001, LA-UR-01-1854, AZURV1). The derivative
 //! of ξ with η alone is a difference of close numbers; but that along both of its arguments is
 //! 4 (η − σ)/((1 − η²)(1 − σ²)), and the one along the contour integrates to nothing. So, in the notation of
-//! [`saddle`](super::saddle), with X = (c t/2) m ξ,
+//! `saddle`, with X = (c t/2) m ξ,
 //!
 //! > φ = c e^(−t)/(4π² r t) ∫₀^∞ Re e^X ξ (η ξ (1 + X) + (2 + X)(σ − η)/(1 − σ²)) ds,
 //! > φₙ = e^(−t)/(4π² r t) (t m/2)ⁿ⁻¹/(n − 1)! ∫₀^∞ Re ξⁿ (n η ξ + (n + 1)(σ − η)/(1 − σ²)) ds,

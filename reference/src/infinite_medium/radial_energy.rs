@@ -18,7 +18,7 @@
 //! # Isotropic scattering
 //!
 //! [`scattered_shell_energy`] and [`scattered_shell_energy_by_order`] integrate 4πr² times the fluence rate of
-//! [`point_pulse`](super::point_pulse) over r0 ≤ r < r1, up to the front and beyond, where the fourth root of
+//! `point_pulse` over r0 ≤ r < r1, up to the front and beyond, where the fourth root of
 //! t − r removes its logarithm. v = σt = 1; order n is for albedo 1 and has the factor cⁿ otherwise.
 
 use super::angular_moments::sinc_moment;
@@ -86,6 +86,7 @@ pub fn scattered_energy_within_radius(input: &EnergyWithin) -> Result<f64> {
     let mut cut = FIRST_CUT / (time - r);
     let mut series = Series { g, time, length: LENGTH * time, coefficients: Vec::new() };
     require(series.terms(cut) <= MOST_TERMS, "r", r, "beyond the front or 5 % behind it")?;
+    let mut before = f64::INFINITY;
     loop {
         let value = series.energy(r, cut);
         let error = (value - series.energy(r, COARSER * cut)).abs();
@@ -93,9 +94,11 @@ pub fn scattered_energy_within_radius(input: &EnergyWithin) -> Result<f64> {
             return Ok(value);
         }
         cut *= 1.5;
-        if series.terms(cut) > MOST_TERMS {
+        // An error that does not fall any more is rounding.
+        if series.terms(cut) > MOST_TERMS || error > 0.1 * before {
             return Err(ReferenceError::NoConvergence { value, error });
         }
+        before = error;
     }
 }
 
@@ -198,6 +201,7 @@ fn filter(fraction: f64, order: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::infinite_medium::{AliveOfOrder, energy_of_order};
+    use proptest::prelude::*;
 
     fn within(g: f64, time: f64, r: f64) -> f64 {
         scattered_energy_within_radius(&EnergyWithin { g, time, r }).unwrap()
@@ -276,5 +280,24 @@ mod tests {
         assert!(scattered_energy_within_radius(&EnergyWithin { g: 1.0, ..input }).is_err());
         let shell = ShellEnergy { r0: 2.0, r1: 1.0, time: 1.0, albedo: 1.0 };
         assert!(scattered_shell_energy(&shell).is_err());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+        #[test]
+        fn wild_inputs_give_a_value_or_an_error(
+            log_time in -300.0..0.5_f64, eta in 0.0..1.1_f64, g in -1.1..1.1_f64,
+            albedo in -0.1..2.0_f64, order in 0..50_u32,
+        ) {
+            let time = 10.0_f64.powf(log_time);
+            let (r0, r1) = (0.5 * eta * time, eta * time);
+            for result in [
+                scattered_energy_within_radius(&EnergyWithin { g, time, r: r1 }),
+                scattered_shell_energy(&ShellEnergy { r0, r1, time, albedo }),
+                scattered_shell_energy_by_order(&ShellEnergyOrder { r0, r1, time, order }),
+            ] {
+                prop_assert!(result.as_ref().map_or(true, |v| v.is_finite() && *v >= 0.0), "{result:?}");
+            }
+        }
     }
 }
