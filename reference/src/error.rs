@@ -103,6 +103,32 @@ pub(crate) fn finite_result(solution: &'static str, value: f64) -> Result<f64> {
     if value.is_finite() { Ok(value) } else { Err(ReferenceError::NotFinite { solution }) }
 }
 
+/// Powers of ten for inputs: half of them anywhere in f64, half within [`COMMON_DECADES`].
+#[cfg(test)]
+pub(crate) fn decades<const N: usize>() -> impl proptest::strategy::Strategy<Value = [f64; N]> {
+    use proptest::array::UniformArrayStrategy;
+    proptest::prop_oneof![
+        UniformArrayStrategy::new(-320.0..308.3),
+        UniformArrayStrategy::new(-COMMON_DECADES..COMMON_DECADES),
+    ]
+}
+
+/// Whether a result is not negative and finite, or an error; within [`COMMON_DECADES`], only one of the
+/// domain or of a value beyond f64, not that of a quadrature that gave up.
+#[cfg(test)]
+pub(crate) fn is_sound(result: &Result<f64>, exponents: &[f64]) -> bool {
+    use ReferenceError::{Domain, NotFinite};
+    let common = exponents.iter().all(|exponent| exponent.abs() <= COMMON_DECADES);
+    match result {
+        Ok(value) => value.is_finite() && *value >= 0.0,
+        Err(error) => !common || matches!(error, Domain { .. } | NotFinite { .. }),
+    }
+}
+
+/// Micrometres in light-years have 22.
+#[cfg(test)]
+const COMMON_DECADES: f64 = 40.0;
+
 #[cfg(test)]
 mod tests {
     use super::*;

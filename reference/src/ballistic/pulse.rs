@@ -98,6 +98,10 @@ fn emission_times(speed: f64, r: f64, t0: f64, t1: f64) -> Result<(f64, f64)> {
 fn normal_share(a: f64, b: f64, width: f64) -> Result<f64> {
     // Mirrored, the tail that holds both edges is the upper one.
     let (a, b) = if b <= 0.0 { (-b, -a) } else { (a, b) };
+    // The tail is below the range of f64.
+    if a > 40.0 {
+        return Ok(0.0);
+    }
     if width * a.abs().max(1.0) < 1.0 {
         let integral = single_panel(|y| (-y * (2.0 * a + y)).exp(), 0.0, width)?;
         return Ok((-a * a).exp() * integral / PI.sqrt());

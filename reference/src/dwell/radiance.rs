@@ -72,21 +72,26 @@ pub fn dwell_single_scatter_radiance(input: &DwellSingleScatter) -> Result<f64> 
         return Ok(0.0);
     }
     require(ray.q_at_front > 0.0, "alpha", alpha, "above 0")?;
-    let integrand = Integrand { ray, g, behind, decay, sigma_t };
-    let strength = energy * sigma_s / mean_dwell;
-    let value = if sigma_t >= decay {
-        let exponent = -sigma_t * source_distance - behind * decay;
-        strength * exponent.exp() * integrand.weighted_to_front()?
-    } else {
-        strength * (-sigma_t * path).exp() * integrand.weighted_to_now()?
-    };
-    finite_result("dwell_single_scatter_radiance", value)
+    let unit = ray.distance(ray.q_at_front);
+    let integrand = Integrand { ray, unit, g, behind, decay, sigma_t };
+    let from_front = sigma_t >= decay;
+    let depth =
+        if from_front { sigma_t * source_distance + behind * decay } else { sigma_t * path };
+    let strength = energy * sigma_s / mean_dwell * (-depth).exp();
+    if strength == 0.0 {
+        return Ok(0.0);
+    }
+    let integral =
+        if from_front { integrand.weighted_to_front()? } else { integrand.weighted_to_now()? };
+    finite_result("dwell_single_scatter_radiance", strength * (integral / unit / unit))
 }
 
 /// The integrals over the path length, with the largest exponential taken out.
 #[derive(Debug, Clone, Copy)]
 struct Integrand {
     ray: RayToSource,
+    /// What lengths are measured in: their squares can be out of range.
+    unit: f64,
     g: f64,
     /// v t − D
     behind: f64,
@@ -97,7 +102,7 @@ struct Integrand {
 
 impl Integrand {
     fn kernel(&self, q: f64) -> f64 {
-        self.ray.kernel(self.g, q)
+        self.ray.kernel_per(self.unit, self.g, q)
     }
 
     /// ∫ kernel e^(−(σt − 1/(vτ)) (x − D)) dx.

@@ -26,7 +26,7 @@
 //! Domain: rates and times of at least 0, |g| < 1; τ = 0 is the medium without dwell.
 
 use super::flight::check;
-use crate::error::{Result, finite_result, path_length, positive};
+use crate::error::{Result, finite, finite_result, path_length, positive};
 use crate::numerics::quadrature::{RELATIVE_TOLERANCE, adaptive, single_panel};
 use crate::phase::check_mean_cosine;
 use serde::Deserialize;
@@ -56,9 +56,14 @@ pub fn dwell_mean_square_distance(input: &DwellSpread) -> Result<f64> {
     check_mean_cosine(g)?;
     let path = path_length(speed, time)?;
     let release_rate = 1.0 / mean_dwell;
-    let mean = if release_rate == f64::INFINITY || scattering_rate == 0.0 {
+    // The relative effect of the dwells is at most λτ.
+    let mean = if scattering_rate <= 1e-20 * release_rate {
         divided_difference(0.0, scattering_rate * (1.0 - g) * time)?
     } else {
+        finite(
+            "(sigma_s * speed + 1 / mean_dwell) * time",
+            (scattering_rate + release_rate) * time,
+        )?;
         Rates::new(scattering_rate, release_rate, g).mean(time)?
     };
     // One factor after the other: the square can overflow where the product does not.

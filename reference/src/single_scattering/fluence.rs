@@ -31,8 +31,8 @@
 use super::radiance::check_medium;
 use crate::error::{Result, finite_result, non_negative, path_bin, path_length, positive, require};
 use crate::numerics::front::{BehindFront, offset};
-use crate::numerics::path_integral::decaying_integral;
-use crate::numerics::quadrature::{RELATIVE_TOLERANCE, adaptive, tanh_sinh};
+use crate::numerics::path_integral;
+use crate::numerics::quadrature::{RELATIVE_TOLERANCE, adaptive};
 use crate::phase::{Deflection, henyey_greenstein};
 use serde::Deserialize;
 use std::f64::consts::PI;
@@ -104,7 +104,7 @@ pub fn once_scattered_fluence(input: &OnceScattered) -> Result<f64> {
     check_medium(energy, sigma_s, sigma_t, 0.0)?;
     let Some((path, behind)) = behind_front(speed, r, time)? else { return Ok(0.0) };
     let strength = energy * sigma_s * speed * (-sigma_t * path).exp();
-    let value = strength / (4.0 * PI) / path * logarithm_per_r(r, behind);
+    let value = strength / (4.0 * PI) / path * logarithm_per_r(r, behind, 1.0);
     finite_result("once_scattered_fluence", value)
 }
 
@@ -117,7 +117,7 @@ pub fn once_scattered_fluence_hg(input: &OnceScatteredHg) -> Result<f64> {
     if strength == 0.0 {
         return Ok(0.0);
     }
-    let value = strength * mean_phase(g, r, behind)? / path * logarithm_per_r(r, behind);
+    let value = strength * mean_phase(g, r, behind)? / path * logarithm_per_r(r, behind, 1.0);
     finite_result("once_scattered_fluence_hg", value)
 }
 
@@ -133,8 +133,8 @@ pub fn once_scattered_fluence_bins(input: &OnceScatteredBin) -> Result<f64> {
     if strength == 0.0 {
         return Ok(0.0);
     }
-    let integral = integrated_logarithm(r, sigma_t, bin)?;
-    finite_result("once_scattered_fluence_bins", strength * integral)
+    let (unit, integral) = (r + bin.start, integrated_logarithm(r, sigma_t, bin)?);
+    finite_result("once_scattered_fluence_bins", strength * (integral / unit / unit))
 }
 
 /// The fluence per energy \[1/m²\] of light scattered once and isotropically, over all times.
@@ -164,10 +164,14 @@ fn behind_front(speed: f64, r: f64, time: f64) -> Result<Option<(f64, f64)>> {
     Ok((behind > 0.0).then_some((path, behind)))
 }
 
-/// ln((x + r)/(x − r)) / r, where x = r + `behind`.
-fn logarithm_per_r(r: f64, behind: f64) -> f64 {
+/// `unit` · ln((x + r)/(x − r)) / r, where x = r + `behind`.
+fn logarithm_per_r(r: f64, behind: f64, unit: f64) -> f64 {
     // The next term of the series is r²/3x².
-    if r < 1e-9 * behind { 2.0 / (r + behind) } else { (2.0 * (r / behind)).ln_1p() / r }
+    if r < 1e-9 * behind {
+        unit * 2.0 / (r + behind)
+    } else {
+        (2.0 * (r / behind)).ln_1p() * (unit / r)
+    }
 }
 
 /// The mean of p over −Y < y < Y.
@@ -198,24 +202,16 @@ fn mean_phase(g: f64, r: f64, behind: f64) -> Result<f64> {
     Ok(adaptive(phase, &breaks, RELATIVE_TOLERANCE)?.value)
 }
 
-/// ∫ e^(−σt (x − x0)) ln((x + r)/(x − r)) / (r x) dx over a bin that starts at x0.
+/// x0² ∫ e^(−σt (x − x0)) ln((x + r)/(x − r)) / (r x) dx over a bin that starts at x0.
 fn integrated_logarithm(r: f64, sigma_t: f64, bin: BehindFront) -> Result<f64> {
-    let kernel = |behind: f64| logarithm_per_r(r, behind) / (r + behind);
-    if bin.start > 0.0 {
-        let integrand = |behind: f64, _| kernel(behind);
-        return decaying_integral(bin.start, bin.width, sigma_t, &[r], integrand);
-    }
-    // Close to the front, where only the logarithm changes.
-    let close = bin.width.min(r).min(1.0 / sigma_t);
-    let integrand = |behind: f64| kernel(behind) * (-sigma_t * behind).exp();
-    let first = tanh_sinh(|node| integrand(node.from_start), 0.0, close, RELATIVE_TOLERANCE)?;
-    let rest = if bin.width > close {
-        let integrand = |behind: f64, _| kernel(behind);
-        decaying_integral(close, bin.width - close, sigma_t, &[r], integrand)?
-    } else {
-        0.0
+    // In units of x0, in which squares of lengths stay in range.
+    let unit = r + bin.start;
+    let integrand = |behind: f64| {
+        // Offsets that underflow have no weight, but must have a value.
+        let behind = behind.max(f64::MIN_POSITIVE);
+        logarithm_per_r(r, behind, unit) * (unit / (r + behind))
     };
-    Ok(first.value + (-sigma_t * close).exp() * rest)
+    path_integral::behind_front(bin.start, bin.width, sigma_t, &[unit], integrand)
 }
 
 #[cfg(test)]

@@ -98,10 +98,14 @@ pub fn single_scatter_radiance_bins(input: &SingleScatterBin) -> Result<f64> {
     }
     let q_start = (start - source_distance) + ray.q_at_front;
     require(q_start > 0.0, "alpha", alpha, "above 0 where the bin holds the wavefront")?;
-    let kernel = |q: f64, _| ray.kernel(g, q);
-    let integral = decaying_integral(q_start, end - start, sigma_t, &ray.scales(g), kernel)?;
     let strength = energy * sigma_s * (-sigma_t * start).exp();
-    finite_result("single_scatter_radiance_bins", strength * integral)
+    if strength == 0.0 {
+        return Ok(0.0);
+    }
+    let unit = ray.distance(q_start);
+    let kernel = |q: f64, _| ray.kernel_per(unit, g, q);
+    let integral = decaying_integral(q_start, end - start, sigma_t, &ray.scales(g), kernel)?;
+    finite_result("single_scatter_radiance_bins", strength * (integral / unit / unit))
 }
 
 /// Checks what every solution of singly scattered light has in common.
@@ -133,10 +137,20 @@ impl RayToSource {
     }
 
     /// p(θ) / (2π (q² + b²)).
-    pub(crate) fn kernel(&self, g: f64, q: f64) -> f64 {
-        let distance = q.hypot(self.offset);
+    fn kernel(&self, g: f64, q: f64) -> f64 {
+        self.kernel_per(1.0, g, q)
+    }
+
+    /// The same times `unit`², for integrals over squares that are out of range.
+    pub(crate) fn kernel_per(&self, unit: f64, g: f64, q: f64) -> f64 {
+        let share = unit / self.distance(q);
         let deflection = Deflection::from_half_tangent(q, self.offset);
-        henyey_greenstein(g, deflection) / (2.0 * PI) / distance / distance
+        henyey_greenstein(g, deflection) / (2.0 * PI) * share * share
+    }
+
+    /// √(q² + b²)
+    pub(crate) fn distance(&self, q: f64) -> f64 {
+        q.hypot(self.offset)
     }
 
     /// The q at which the kernel changes its slope.

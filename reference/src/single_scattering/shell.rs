@@ -21,8 +21,8 @@
 use super::radiance::check_medium;
 use crate::error::{Result, finite_result, non_negative, path_bin, path_length, require};
 use crate::numerics::front::{BehindFront, offset};
-use crate::numerics::path_integral::decaying_integral;
-use crate::numerics::quadrature::{RELATIVE_TOLERANCE, single_panel, tanh_sinh};
+use crate::numerics::path_integral::behind_front;
+use crate::numerics::quadrature::single_panel;
 use serde::Deserialize;
 
 /// Inputs of [`once_scattered_shell_energy`].
@@ -77,12 +77,14 @@ pub fn once_scattered_shell_energy_bins(input: &OnceScatteredShellBin) -> Result
     check_medium(1.0, sigma_s, sigma_t, 0.0)?;
     path_bin(speed, t0, t1)?;
     let Some(bin) = BehindFront::of_bin(speed, t0, t1, r0) else { return Ok(0.0) };
-    if shell.thickness == 0.0 {
+    let transmittance = (-sigma_t * (r0 + bin.start)).exp();
+    if shell.thickness == 0.0 || transmittance == 0.0 {
         return Ok(0.0);
     }
-    let integral = shell.within(sigma_t, bin)?;
-    let transmittance = (-sigma_t * (r0 + bin.start)).exp();
-    let value = sigma_s * transmittance * integral / speed;
+    // The last path length of the bin, so that no product exceeds the range.
+    let unit = r0 + bin.start + bin.width;
+    let integral = shell.within(sigma_t, bin, unit)?;
+    let value = sigma_s * transmittance * (integral / speed) * unit;
     finite_result("once_scattered_shell_energy_bins", value)
 }
 
@@ -116,52 +118,32 @@ impl Shell {
         Ok(outside(delta0) - outside(delta1))
     }
 
-    /// ∫ x e^(−σt (x − x0)) share dx over a bin behind r0 that starts at x0.
-    fn within(&self, sigma_t: f64, bin: BehindFront) -> Result<f64> {
-        let at = |inner: f64| {
-            let x = self.r0 + inner;
-            self.share(x, inner, inner - self.thickness).map_or(f64::NAN, |share| x * share)
+    /// ∫ x/unit · e^(−σt (x − x0)) share dx over a bin behind r0 that starts at x0.
+    fn within(&self, sigma_t: f64, bin: BehindFront, unit: f64) -> Result<f64> {
+        let at = |x: f64, inner: f64, outer: f64| {
+            self.share(x, inner, outer).map_or(f64::NAN, |share| x / unit * share)
         };
-        // While the front crosses the shell, and after.
+        // While the front crosses the shell.
         let crossing = bin.before(self.thickness);
-        let first = match crossing {
-            None => 0.0,
+        let (first, crossed) = match crossing {
+            None => (0.0, 0.0),
             Some(part) => {
-                let integrand = |inner: f64, after: f64| at(inner) * (-sigma_t * after).exp();
-                let start = part.start;
-                let nodes = |after: f64| integrand(start + after, after);
-                tanh_sinh(|node| nodes(node.from_start), 0.0, part.width, RELATIVE_TOLERANCE)?.value
+                let integrand = |inner: f64| at(self.r0 + inner, inner, inner - self.thickness);
+                let scales = [self.r0, self.thickness];
+                let scales = if self.r0 > 0.0 { &scales[..] } else { &scales[1..] };
+                let value = behind_front(part.start, part.width, sigma_t, scales, integrand)?;
+                (value, part.width)
             }
         };
-        let width_before = crossing.map_or(0.0, |part| part.width);
-        let rest = BehindFront { start: bin.start + width_before, width: bin.width - width_before };
-        if rest.width <= 0.0 {
+        if bin.width <= crossed {
             return Ok(first);
         }
-        let beyond = rest.start - self.thickness;
-        let second = self.after(sigma_t, beyond.max(0.0), rest.width)?;
-        Ok(first + (-sigma_t * width_before).exp() * second)
-    }
-
-    /// The same after the front has left the shell, from an offset behind r1.
-    fn after(&self, sigma_t: f64, start: f64, width: f64) -> Result<f64> {
-        let at = |outer: f64| {
-            let x = self.r1 + outer;
-            self.share(x, self.thickness + outer, outer).map_or(f64::NAN, |share| x * share)
-        };
-        if start > 0.0 {
-            return decaying_integral(start, width, sigma_t, &[self.thickness, self.r1], |q, _| {
-                at(q)
-            });
-        }
-        let close = width.min(self.thickness).min(1.0 / sigma_t);
-        let nodes = |outer: f64| at(outer) * (-sigma_t * outer).exp();
-        let first = tanh_sinh(|node| nodes(node.from_start), 0.0, close, RELATIVE_TOLERANCE)?.value;
-        if width <= close {
-            return Ok(first);
-        }
-        let rest = self.after(sigma_t, close, width - close)?;
-        Ok(first + (-sigma_t * close).exp() * rest)
+        // And after.
+        let integrand = |outer: f64| at(self.r1 + outer, self.thickness + outer, outer);
+        let start = (bin.start + crossed - self.thickness).max(0.0);
+        let scales = [self.thickness, self.r1];
+        let rest = behind_front(start, bin.width - crossed, sigma_t, &scales, integrand)?;
+        Ok(first + (-sigma_t * crossed).exp() * rest)
     }
 }
 
@@ -170,7 +152,7 @@ fn outside(delta: f64) -> f64 {
     if delta <= 0.0 {
         return 0.0;
     }
-    delta + 0.5 * delta * (2.0 - delta) * ((2.0 - delta) / delta).ln()
+    delta + 0.5 * delta * (2.0 - delta) * ((2.0 - delta).ln() - delta.ln())
 }
 
 #[cfg(test)]
