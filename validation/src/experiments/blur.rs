@@ -45,9 +45,10 @@ const BIAS_TIME: TimeSpec = TimeSpec { start_opl: 0.0, bin_width_opl: 6.4, bins:
 const FULL_RADII: [f64; 4] = [0.22, 0.3, 0.4, 0.5];
 const QUICK_RADII: [f64; 2] = [0.36, 0.5];
 
-const VARIANCE_TIME: TimeSpec = TimeSpec { start_opl: 0.0, bin_width_opl: 0.6, bins: 10 };
-/// The bin that is judged apart: well behind the front.
-const BIN: usize = 2;
+/// Bins much wider than a pair's arrival: pairs that two bins share add less to the variance.
+const VARIANCE_TIME: TimeSpec = TimeSpec { start_opl: 0.0, bin_width_opl: 1.2, bins: 6 };
+/// The bin that is judged apart: behind the front.
+const BIN: usize = 1;
 const SMALL_RADII: [f64; 4] = [0.01, 0.02, 0.04, 0.08];
 const PHOTONS: [u64; 4] = [250, 500, 1000, 2000];
 const MIDDLE: (f64, u64) = (0.03, 1000);
