@@ -178,6 +178,11 @@ impl ChordSum {
         Ok(Self { chords: self.chords + 1, cells })
     }
 
+    /// The number n of chords.
+    pub fn chords(&self) -> u32 {
+        self.chords
+    }
+
     /// The density at x.
     pub fn density(&self, x: f64) -> f64 {
         if !(0.0..=f64::from(self.chords)).contains(&x) {
