@@ -99,3 +99,30 @@ fn grey_in_three_channels_is_grey_in_one() {
         one.with(means, errors).assert_agree(&one, 0.02, "grey");
     }
 }
+
+/// The eye in fog: flights pass it as closely as they like. Single scattering close to the eye
+/// arrives at the lamp's own distance, 2 m; from 2.5 m on the scattering is at least 0.25 m away, the
+/// variance is finite, and Student's t holds.
+#[test]
+fn an_eye_in_fog_agrees_with_the_path_tracer_away_from_itself() {
+    let integrator = IntegratorSpec { max_depth: Some(2), ..IntegratorSpec::default() };
+    let parts = scenes::infinite(
+        scenes::fog(0.5, 0.6, 0.3),
+        scenes::point(DVec3::new(0.0, 1.6, -1.2), Rgb::ONE),
+        scenes::camera(DVec3::ZERO, -DVec3::Z, 40.0, (4, 4)),
+        scenes::film(4, 4, 0.5, 16),
+    );
+    let scene = Scene::assemble(SceneParts { integrator, ..parts }).expect("a scene");
+    let plan = Plan::new(&scene, &integrator);
+    let late = |arrays: &tpb_film::Arrays| {
+        let blocks = image_and_blocks(16)(arrays);
+        // The first is the steady image, then bins.
+        (0..4).map(|i| blocks[6 + 2 * i] + blocks[7 + 2 * i]).collect::<Vec<_>>()
+    };
+    let options = LightOptions { photons_per_pass: Some(20_000) };
+    let light = LightTracer::<1>::new(&scene, &plan, integrator, &options).expect("options");
+    let options = PathOptions { samples_per_pass: NonZeroU32::new(400) };
+    let path = PathTracer::<1>::new(&scene, &plan, integrator, &options);
+    let light = estimate(&light, &scene.film, (51, 40), late);
+    light.assert_agree(&estimate(&path, &scene.film, (52, 40), late), 0.02, "in fog");
+}
