@@ -52,7 +52,7 @@ fn columns(comparison: &Comparison, verdict: Verdict) -> (String, String, String
     };
     let reason = match (&worst.found, verdict) {
         (_, Verdict::Passed | Verdict::Unknown) if comparison.widened > 0 => {
-            format!(", {} rows to their own precision", comparison.widened)
+            format!(", to their own precision: {} of the rows", comparison.widened)
         }
         (_, Verdict::Passed | Verdict::Unknown) => String::new(),
         (Ok(found), Verdict::Failed) => {
@@ -81,7 +81,11 @@ mod tests {
         let column = lines[0].find("verdict").unwrap();
         let verdicts: Vec<_> =
             lines[1..lines.len() - 1].iter().map(|line| &line[column..]).collect();
-        assert!(verdicts.iter().all(|verdict| ["passed", "unknown"].contains(verdict)), "{text}");
+        let known = |verdict: &&str| {
+            ["passed", "unknown"].iter().any(|start| verdict.split(',').next() == Some(start))
+        };
+        assert!(verdicts.iter().all(known), "{text}");
+        assert!(text.contains("passed, to their own precision: 1 of the rows"), "{text}");
     }
 
     #[test]
