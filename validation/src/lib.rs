@@ -34,6 +34,7 @@ pub mod run_time;
 pub mod sabotage;
 pub mod scenes;
 pub mod statistics;
+pub mod stress;
 pub mod suite;
 pub mod taps;
 

@@ -3,6 +3,7 @@
 mod error_time;
 mod gate;
 mod schema;
+mod stress;
 mod tables;
 mod tidy;
 mod validate;
@@ -25,6 +26,8 @@ struct Cli {
 enum Task {
     /// Compares the renderers with the analytic reference and with each other (the main job).
     Validate(validate::ValidateArgs),
+    /// Stiff and extreme cases: a right answer or a clear error, never a panic or a hang.
+    Stress(stress::StressArgs),
     /// Everything that must pass: fmt, clippy, docs, house rules, all tests.
     Test,
     /// Evaluates every row of every JSON table of published and computed values.
@@ -49,6 +52,7 @@ enum Task {
 fn main() -> ExitCode {
     let outcome = match Cli::parse().task {
         Task::Validate(args) => validate::run(&args),
+        Task::Stress(args) => stress::run(&args),
         Task::Test => gate::run(),
         Task::Tables { dir } => tables::run(dir),
         Task::ErrorTime(args) => error_time::run(&args),

@@ -222,8 +222,9 @@ impl Settings {
             ("piece_radii", self.piece_radii),
         ];
         for (option, found) in lengths {
-            if !(found > 0.0 && found.is_finite()) {
-                return Err(OptionError { option, expected: "positive and finite", found });
+            // Cubes of radii, and products of them with lengths, stay finite.
+            if !(1e-30..=1e30).contains(&found) {
+                return Err(OptionError { option, expected: "from 1e-30 to 1e30", found });
             }
         }
         let counts = [
