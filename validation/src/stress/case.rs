@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use tpb_beams::{BeamLength, BeamOptions, KernelChoice};
+use tpb_light::LightOptions;
 use tpb_path::PathOptions;
 
 use crate::error::Result;
@@ -14,6 +15,8 @@ use crate::measure::Estimator;
 pub enum Method {
     /// The path tracer.
     Path,
+    /// The light tracer.
+    Light,
     /// Long photon beams with the 1D kernel.
     Beams1d,
     /// Long photon beams with the 2D kernel.
@@ -51,15 +54,16 @@ impl Work {
 
 impl Method {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::Path, Self::Beams1d, Self::Beams2d, Self::Beams3d, Self::BeamsShort];
-    /// Those that trace photons.
+    pub const ALL: [Self; 6] =
+        [Self::Path, Self::Light, Self::Beams1d, Self::Beams2d, Self::Beams3d, Self::BeamsShort];
+    /// Those that leave beams.
     pub const BEAMS: [Self; 4] = [Self::Beams1d, Self::Beams2d, Self::Beams3d, Self::BeamsShort];
 
     /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Path => "path",
+            Self::Light => "light",
             Self::Beams1d => "beams-1d",
             Self::Beams2d => "beams-2d",
             Self::Beams3d => "beams-3d",
@@ -89,6 +93,7 @@ impl Method {
             Self::Path => {
                 Estimator::Path(PathOptions { samples_per_pass: work.samples.try_into().ok() })
             }
+            Self::Light => Estimator::Light(LightOptions { photons_per_pass: Some(work.photons) }),
             Self::Beams1d => beams(KernelChoice::OneD, BeamLength::Long),
             Self::Beams2d => beams(KernelChoice::TwoD, BeamLength::Long),
             Self::Beams3d => beams(KernelChoice::ThreeD, BeamLength::Long),

@@ -1,8 +1,8 @@
 //! Light scattered once in endless fog: a point lamp beside the camera, in any unit.
 //!
 //! The lamp of unit power stands at (1, 0, 0), the camera at the origin looks along +z. Every pixel
-//! is the mean over its area of the exact radiance: of `path` the single scattering itself, of
-//! beams their expected blur, bin by bin (`single_scatter_radiance_bins`, `expected_blur_1d_bins`,
+//! is the mean over its area of the exact radiance: of `path` and
+//! `light` the single scattering itself, of beams their expected blur, bin by bin (`single_scatter_radiance_bins`, `expected_blur_1d_bins`,
 //! `expected_blur_2d_hg_bins`, `expected_blur_3d_bins`).
 
 use tpb_reference::ReferenceError;
@@ -175,7 +175,7 @@ impl Single {
         let (sigma_s, energy, speed, radius) = (sigma_s[channel], 1.0, 1.0, self.radius);
         let (ray_offset, source_z) = (alpha.sin(), alpha.cos());
         match method {
-            Method::Path => single_scatter_radiance_bins(&SingleScatterBin {
+            Method::Path | Method::Light => single_scatter_radiance_bins(&SingleScatterBin {
                 energy,
                 sigma_s,
                 sigma_t,

@@ -26,6 +26,7 @@ pub(super) fn effort(method: Method) -> (Work, u64) {
     let work = Work { samples: 4, photons: 8000, radius: None, surface_radius: None };
     match method {
         Method::Path => (Work { samples: 1024, ..work }, 2),
+        Method::Light => (Work { photons: 100_000, ..work }, 1),
         // A pair costs the 3D kernel a quadrature.
         Method::Beams3d => (Work { samples: 1, photons: 16_000, ..work }, 3),
         Method::BeamsShort => (Work { samples: 1, photons: 16_000, ..work }, 12),
