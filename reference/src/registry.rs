@@ -3,10 +3,10 @@
 //! A solution is a function of one deserialisable struct. Each subject of this crate has a list of
 //! its own, `SOLUTIONS` in its `mod.rs`; a line gives the name of the table, the class of its
 //! tolerance, the function (or one for each of the quantities that the table distinguishes), what it
-//! is, and in which unit. A solution is exact unless it says otherwise ([`Solution::approximate`]).
+//! is, and in which unit. A solution is exact unless it says otherwise ([`field@Solution::approximate`]).
 //!
 //! The structs of the solutions are strict. Where a table leaves out inputs that it fixes, the
-//! solution names them with these values ([`Solution::defaults`]), and [`Solution::complete`] fills
+//! solution names them with these values ([`field@Solution::defaults`]), and [`Solution::complete`] fills
 //! them in.
 
 use crate::error::{ReferenceError, Result};

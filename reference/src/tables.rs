@@ -7,7 +7,7 @@
 //!
 //! A row may leave out inputs that the table fixes, and say so behind the name of the quantity, as in
 //! "time R=1 L=4 c=1": if no quantity goes by the whole name, what counts is the name up to the first
-//! space or parenthesis, and the solution's defaults are those values ([`Solution::defaults`]).
+//! space or parenthesis, and the solution's defaults are those values ([`field@Solution::defaults`]).
 //!
 //! The error of a row is relative to its value. A value of 0 stands for darkness, before a front
 //! or outside a kernel, which is a matter of cases and not of rounding: it must be met exactly.

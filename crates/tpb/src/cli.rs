@@ -135,7 +135,7 @@ pub(crate) struct ReferenceArgs {
     #[arg(long, conflicts_with_all = ["set", "over", "quantity", "plot"])]
     pub(crate) list: bool,
 
-    /// An input, as JSON or a word: energy=1, beam_origin=[0,0,0], order=all
+    /// An input, as a number, a vector of JSON, or a word: energy=1, order=all
     #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
     pub(crate) set: Vec<String>,
 

@@ -1,7 +1,7 @@
 //! What a renderer with the 2-D beam kernel must find *on average*: the disc-blurred single
 //! scattering of an isotropic point pulse.
 //!
-//! The counterpart of [`crate::expected_blur`] for the uniform disc of radius R across each beam, in the
+//! The counterpart of [`crate::beams::expected_blur`] for the uniform disc of radius R across each beam, in the
 //! same geometry: camera at the origin, looking along +z; source at the axial position z and at
 //! the distance b > R from the ray; x = v t, q = x − z. A point of the ray at the axial distance
 //! w = s − z from the source is seen through the beams of a cone; for isotropic scattering the average
