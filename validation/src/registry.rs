@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use crate::experiment::{Effort, Experiment, Kind};
 use crate::experiments::{
-    blur, calibration, echoes, energy, equal_time, even_spread, fresnel, infinite_medium, kernels,
-    mirrors, refraction, samplers, sphere, tables,
+    blur, calibration, echoes, energy, equal_time, even_spread, fresnel, glass, infinite_medium,
+    kernels, lens, mirrors, refraction, samplers, sphere, spot, tables,
 };
 use crate::matrix;
 use crate::sabotage::Twin;
@@ -42,11 +42,14 @@ fn sound(effort: Effort) -> Experiments {
         kernels::all(),
         energy::all(),
         fresnel::all(),
-        echoes::all(),
+        echoes::all(effort),
         refraction::all(effort),
         mirrors::all(effort),
         infinite_medium::all(effort),
+        lens::all(effort),
+        glass::all(),
         sphere::all(effort),
+        spot::all(effort),
         matrix::all(effort),
         even_spread::all(),
         blur::all(effort),

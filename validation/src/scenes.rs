@@ -121,7 +121,7 @@ pub fn infinite_fog(context: &Context, view: &View, fog: &Fog, light: DVec3) -> 
 
 /// The inside of a unit sphere with a diffuse wall; camera and a point light of unit power at its
 /// centre.
-pub fn diffuse_sphere(context: &Context, view: &View, albedo: f64) -> Result<Scene> {
+pub fn diffuse_sphere_parts(view: &View, albedo: f64) -> SceneParts {
     let mut parts = view.parts();
     let wall = Reflector::Diffuse(Rgb::splat(albedo));
     let sphere = Sphere { centre: DVec3::ZERO, radius: 1.0, flipped: true };
@@ -133,7 +133,7 @@ pub fn diffuse_sphere(context: &Context, view: &View, albedo: f64) -> Result<Sce
         radiance: None,
     }];
     parts.emitters = vec![unit_point(DVec3::ZERO)];
-    context.assemble(parts)
+    parts
 }
 
 /// A shipped scene, as its file says.

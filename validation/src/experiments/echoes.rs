@@ -15,14 +15,14 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use tpb_beams::BeamOptions;
-use tpb_optics::{Coefficients, Phase, Rgb};
 use tpb_path::PathOptions;
 use tpb_reference::interfaces::{SlabEcho, slab_echo_time, slab_echo_weight_unpolarised};
-use tpb_scene::{Bsdf, IntegratorSpec, Medium, MediumBoundary, MediumId, Scene, TimeSpec};
+use tpb_scene::{Bsdf, IntegratorSpec, MediumBoundary, MediumId, Scene, TimeSpec};
 
 use crate::error::Result;
 use crate::experiment::{Context, Effort, Experiment, Outcome};
 use crate::experiments::sights::{Instant, Sight, Sights, across, between, glass, lamp, narrow};
+use crate::experiments::sphere::absorber;
 use crate::measure::{BatchPlan, Estimator};
 use crate::registry::Experiments;
 use crate::sabotage::Sabotage;
@@ -80,12 +80,13 @@ pub struct SlabEchoes {
 }
 
 /// Each method and slab.
-pub fn all() -> Experiments {
+pub fn all(effort: Effort) -> Experiments {
     let case = |who, filled| Arc::new(SlabEchoes { who, filled }) as _;
-    [Follower::Path, Follower::Beams]
-        .into_iter()
-        .flat_map(|w| [case(w, false), case(w, true)])
-        .collect()
+    let mut list: Experiments = vec![case(Follower::Path, false), case(Follower::Beams, true)];
+    if effort == Effort::Full {
+        list.extend([case(Follower::Path, true), case(Follower::Beams, false)]);
+    }
+    list
 }
 
 impl SlabEchoes {
@@ -136,15 +137,6 @@ impl SlabEchoes {
             parts.shapes.push(between(middle, sides(first, second)));
         }
         context.assemble(parts)
-    }
-}
-
-fn absorber(sigma_a: f64) -> Medium {
-    Medium {
-        name: format!("absorber {sigma_a}"),
-        coefficients: Coefficients { sigma_s: Rgb::ZERO, sigma_t: Rgb::splat(sigma_a) },
-        phase: Phase::with_mean_cosine(0.0),
-        eta: None,
     }
 }
 

@@ -16,6 +16,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use tpb_beams::BeamOptions;
+use tpb_light::LightOptions;
 use tpb_optics::Rgb;
 use tpb_path::PathOptions;
 use tpb_reference::interfaces::{ParallelMirrors, parallel_mirrors_time, parallel_mirrors_weight};
@@ -51,6 +52,7 @@ pub fn all(effort: Effort) -> Experiments {
     if effort == Effort::Full {
         list.extend([0, 2, 3].map(|bounces| floor(Finder::Beams, bounces)));
         list.push(floor(Finder::Path, 1));
+        list.extend([1, 2].map(|bounces| floor(Finder::Light, bounces)));
     }
     list
 }
@@ -189,6 +191,8 @@ pub enum Finder {
     Path,
     /// Photons on surfaces, from a point lamp.
     Beams,
+    /// Photons that are connected to the camera, from a point lamp.
+    Light,
 }
 
 impl Finder {
@@ -197,6 +201,7 @@ impl Finder {
         match self {
             Self::Path => "path",
             Self::Beams => "beams",
+            Self::Light => "light",
         }
     }
 
@@ -214,6 +219,7 @@ impl Finder {
                 surface_samples: Some(16),
                 ..BeamOptions::default()
             }),
+            Self::Light => Estimator::Light(LightOptions { photons_per_pass: Some(photons) }),
         }
     }
 

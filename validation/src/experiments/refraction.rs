@@ -58,12 +58,12 @@ pub struct ThroughGlass {
 /// Each method and scene.
 pub fn all(effort: Effort) -> Experiments {
     let case = |who, inside| Arc::new(ThroughGlass { who, inside }) as _;
-    let both = |who| [case(who, true), case(who, false)];
-    let kept = |inside: usize| effort.pick(1, inside);
-    [Finder::Path, Finder::Beams]
-        .into_iter()
-        .flat_map(|who| both(who).into_iter().take(kept(2)))
-        .collect()
+    let mut list: Experiments = vec![case(Finder::Path, true)];
+    if effort == Effort::Full {
+        list.extend([Finder::Beams, Finder::Light].map(|who| case(who, true)));
+        list.extend([Finder::Path, Finder::Beams, Finder::Light].map(|who| case(who, false)));
+    }
+    list
 }
 
 impl ThroughGlass {
@@ -156,11 +156,10 @@ impl Experiment for ThroughGlass {
         )
     }
 
-    fn twins(&self, effort: Effort) -> Vec<Sabotage> {
-        match (self.inside, self.who, effort) {
-            (true, Finder::Beams, Effort::Quick) => vec![],
+    fn twins(&self, _: Effort) -> Vec<Sabotage> {
+        match (self.inside, self.who) {
             (true, ..) => vec![Sabotage::EtaSquared],
-            (false, Finder::Path, _) => vec![Sabotage::Cosine],
+            (false, Finder::Path) => vec![Sabotage::Cosine],
             (false, ..) => vec![Sabotage::LATE],
         }
     }
