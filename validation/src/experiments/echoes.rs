@@ -167,8 +167,7 @@ impl Experiment for SlabEchoes {
         let plan = BatchPlan { batches: 64, passes: 1, seed: context.seed };
         // The weak echoes are rare: 1 %.
         let criterion = context.blurred();
-        Sights { estimator: self.who.estimator(2500), plan, criterion, sights: &sights }
-            .run(context)
+        Sights { estimator: self.who.estimator(2500), plan, criterion, at: &sights }.run(context)
     }
 }
 

@@ -185,9 +185,8 @@ impl Experiment for GlassFog {
         let segment = Sabotage::NullSegment(ETA * NULL_RADIUS);
         match (self.who, effort) {
             (Diver::Path, Effort::Full) => vec![segment, Sabotage::LATE],
-            (Diver::Beams, Effort::Full) => vec![segment],
-            (Diver::Path, Effort::Quick) => vec![segment],
             (Diver::Beams, Effort::Quick) => vec![],
+            (_, _) => vec![segment],
         }
     }
 

@@ -178,7 +178,7 @@ impl Experiment for MirrorLamp {
         let sights = Self::sights(context)?;
         let plan = BatchPlan { batches: 4, passes: 1, seed: context.seed };
         let (estimator, criterion) = (self.who.estimator(4), context.unbiased());
-        let mut outcome = Sights { estimator, plan, criterion, sights: &sights }.run(context)?;
+        let mut outcome = Sights { estimator, plan, criterion, at: &sights }.run(context)?;
         outcome.false_alarm = 0.0;
         Ok(outcome)
     }

@@ -137,9 +137,10 @@ impl Screen<'_> {
                 lit(offset, x)?.iter().for_each(&mut count);
             }
         }
-        let share = |points: usize| 1.0 / points as f64;
-        cells.iter_mut().for_each(|cell| *cell *= share(self.points));
-        half.iter_mut().for_each(|cell| *cell *= share(self.points / 2));
+        for (cell, half) in cells.iter_mut().zip(&mut half) {
+            *cell /= self.points as f64;
+            *half /= (self.points / 2) as f64;
+        }
         Ok(Pixel { cells, half, cosine: if energy > 0.0 { across / energy } else { 1.0 } })
     }
 

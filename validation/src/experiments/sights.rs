@@ -61,7 +61,7 @@ pub(super) struct Sights<'a> {
     /// What is asked.
     pub(super) criterion: Criterion,
     /// At what.
-    pub(super) sights: &'a [Sight],
+    pub(super) at: &'a [Sight],
 }
 
 impl Sights<'_> {
@@ -69,7 +69,7 @@ impl Sights<'_> {
     pub(super) fn run(self, context: &Context) -> Result<Outcome> {
         let mut targets = Vec::new();
         let mut rows = vec![Vec::new(); self.plan.batches as usize];
-        for sight in self.sights {
+        for sight in self.at {
             let (contrasts, more) = sight.contrasts();
             targets.extend(more);
             let layout = context.layout(&sight.scene.film)?;
