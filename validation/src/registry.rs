@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::experiment::{Effort, Experiment, Kind};
 use crate::experiments::{
     blur, calibration, echoes, energy, equal_time, even_spread, fresnel, glass, infinite_medium,
-    kernels, lens, mirrors, refraction, samplers, sphere, spot, tables,
+    kernels, lens, mirrors, refraction, samplers, slab, sphere, spot, tables,
 };
 use crate::matrix;
 use crate::sabotage::Twin;
@@ -48,6 +48,7 @@ fn sound(effort: Effort) -> Experiments {
         infinite_medium::all(effort),
         lens::all(effort),
         glass::all(),
+        slab::all(effort),
         sphere::all(effort),
         spot::all(effort),
         matrix::all(effort),

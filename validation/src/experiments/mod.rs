@@ -17,6 +17,7 @@ pub mod refraction;
 pub mod samplers;
 mod screen;
 mod sights;
+pub mod slab;
 pub mod sphere;
 pub mod spot;
 pub mod tables;

@@ -31,6 +31,11 @@ impl Batches {
         self.values.push(values);
     }
 
+    /// The values of each batch.
+    pub fn rows(&self) -> &[Vec<f64>] {
+        &self.values
+    }
+
     /// How many batches there are.
     pub fn len(&self) -> usize {
         self.values.len()
