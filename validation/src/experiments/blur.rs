@@ -40,9 +40,9 @@ const QUICK_MARGIN: f64 = 0.2;
 /// Groups of passes.
 const BATCHES: usize = 32;
 
-const SIDE: usize = 8;
+const SIDE: usize = 4;
 const BIAS_TIME: TimeSpec = TimeSpec { start_opl: 0.0, bin_width_opl: 6.4, bins: 1 };
-const FULL_RADII: [f64; 4] = [0.22, 0.3, 0.4, 0.5];
+const FULL_RADII: [f64; 4] = [0.32, 0.37, 0.43, 0.5];
 const QUICK_RADII: [f64; 2] = [0.36, 0.5];
 
 /// Bins much wider than a pair's arrival: pairs that two bins share add less to the variance.
@@ -84,7 +84,7 @@ pub fn all(effort: Effort) -> Experiments {
 }
 
 impl Blur {
-    fn label(&self) -> &'static str {
+    fn label(self) -> &'static str {
         match self.kernel {
             KernelChoice::OneD => "1d",
             KernelChoice::TwoD => "2d",
@@ -92,7 +92,7 @@ impl Blur {
         }
     }
 
-    fn beams(&self, radius: f64, photons: u64) -> Estimator {
+    fn beams(self, radius: f64, photons: u64) -> Estimator {
         Estimator::Beams(BeamOptions {
             kernel: Some(self.kernel),
             radius: Some(radius),
@@ -103,7 +103,7 @@ impl Blur {
         })
     }
 
-    fn bias(&self, context: &Context) -> Result<Outcome> {
+    fn bias(self, context: &Context) -> Result<Outcome> {
         let radii = context.effort.pick(&QUICK_RADII[..], &FULL_RADII[..]);
         let integrator = only_depth(2);
         let view = View { pixels: SIDE, fov: 50.0, time: Some(BIAS_TIME), integrator };
@@ -150,7 +150,7 @@ impl Blur {
         let name = |radius: &f64| format!("bias over its prediction, radius {radius}");
         let mut targets: Vec<Target> = radii.iter().map(|r| target(name(r), 1.0)).collect();
         targets.push(target("exponent of bias in the radius".into(), slope(&fitted)));
-        let judgement = judge(&targets, &values, &self.criterion(context));
+        let judgement = judge(&targets, &values, &criterion(context));
         let mut outcome: Outcome = judgement.into();
         outcome.notes.push(format!(
             "predicted exponent {:.3} here, {limit:.3} for small radii; bias {:.1} % to {:.1} %",
@@ -175,7 +175,7 @@ impl Blur {
         Ok(outcome)
     }
 
-    fn variance(&self, context: &Context) -> Result<Outcome> {
+    fn variance(self, context: &Context) -> Result<Outcome> {
         let radii = SMALL_RADII.map(|radius| (radius, (radius, MIDDLE.1)));
         let photons = PHOTONS.map(|photons| (photons as f64, (MIDDLE.0, photons)));
         let wrong = SMALL_RADII
@@ -192,10 +192,10 @@ impl Blur {
             ["all light", "a bin"].map(|of| format!("exponent of variance {by}, {of}"))
         });
         let targets: Vec<Target> = names.map(|name| target(name, -1.0)).collect();
-        let mut outcome: Outcome = judge(&targets, &values, &self.criterion(context)).into();
+        let mut outcome: Outcome = judge(&targets, &values, &criterion(context)).into();
         let mut controls = Batches::new();
         (0..BATCHES).for_each(|batch| controls.push(of_wrong.pseudo.map_at(batch).to_vec()));
-        let control = judge(&targets[..2], &controls, &self.criterion(context));
+        let control = judge(&targets[..2], &controls, &criterion(context));
         outcome.notes.push(format!(
             "exponents {:.3} in the radius and {:.3} in the photons; control {:.3}, {:?}",
             outcome.contrasts[0].mean,
@@ -230,7 +230,7 @@ impl Blur {
     }
 
     /// Exponents of the variance of a pass against the first of each pair.
-    fn exponents(&self, context: &Context, runs: &[(f64, (f64, u64)); 4]) -> Result<Exponents> {
+    fn exponents(self, context: &Context, runs: &[(f64, (f64, u64)); 4]) -> Result<Exponents> {
         let per_batch = 256;
         let integrator = only_depth(2);
         let view = View { pixels: 1, fov: 1e-4, time: Some(VARIANCE_TIME), integrator };
@@ -262,12 +262,7 @@ impl Blur {
         Ok(Exponents { pseudo, variances: variances.collect() })
     }
 
-    fn criterion(&self, context: &Context) -> Criterion {
-        let margin = context.effort.pick(QUICK_MARGIN, MARGIN);
-        Criterion { margin, confidence: 0.99, level: context.level }
-    }
-
-    fn draw(&self, context: &Context, labels: (&str, &str), series: &[Series]) -> Result<()> {
+    fn draw(self, context: &Context, labels: (&str, &str), series: &[Series]) -> Result<()> {
         if context.sabotage.is_some() {
             return Ok(());
         }
@@ -283,6 +278,12 @@ impl Blur {
         let path = folder.join("blur.svg");
         std::fs::write(&path, svg).map_err(|error| ValidationError::io(&path, error))
     }
+}
+
+/// The stated margin.
+fn criterion(context: &Context) -> Criterion {
+    let margin = context.effort.pick(QUICK_MARGIN, MARGIN);
+    Criterion { margin, confidence: 0.99, level: context.level }
 }
 
 /// Pseudo-values for all light and for a bin.

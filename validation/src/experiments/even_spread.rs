@@ -210,7 +210,9 @@ impl Experiment for EvenSpreading {
             targets.extend(case.targets()?);
         }
         let mut values = Batches::new();
-        rows.into_iter().for_each(|row| values.push(row));
+        for row in rows {
+            values.push(row);
+        }
         let outcome: Outcome = judge(&targets, &values, &context.unbiased()).into();
         if context.sabotage.is_none() {
             draw(&cases, &outcome, context)?;
@@ -219,9 +221,12 @@ impl Experiment for EvenSpreading {
     }
 }
 
+/// Points, or intervals.
+type Pairs = Vec<(f64, f64)>;
+
 /// Measured biases on the predicted curves.
 fn draw(cases: &[Case], outcome: &Outcome, context: &Context) -> Result<()> {
-    let measured = |which: usize| -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+    let measured = |which: usize| -> (Pairs, Pairs) {
         let contrasts = outcome.contrasts.chunks(4).map(|of_case| &of_case[which]);
         let at = cases.iter().zip(contrasts);
         at.map(|(case, c)| {
