@@ -119,10 +119,10 @@ pub(crate) struct InfoArgs {
 #[command(after_help = "\
 Examples:
   tpb reference --list
-  tpb reference ballistic_point_fluence --set energy=1 --set sigma_t=0.5 --set r=2
-  tpb reference diffusion_infinite --set r=5 --set mu_a=0.02 --set mu_s_prime=2 --set speed=1 \\
+  tpb reference ballistic_point_fluence --set energy=1 sigma_t=0.5 r=2
+  tpb reference diffusion_infinite --set r=5 mu_a=0.02 mu_s_prime=2 speed=1 \\
       --over time=1..100:400 --log-x --log-y -o curve.svg
-  tpb reference sphere_centre_radiance_bins --set albedo=0.7 --set order=all --over bins=0..12:120
+  tpb reference sphere_centre_radiance_bins --set albedo=0.7 order=all --over bins=0..12:120
 
 Where a solution has no value, as on a wavefront, a cell is empty (JSON: null).
 Exit codes: 0 at least one value; 2 none, bad usage, or a file that cannot be written.")]
@@ -135,8 +135,8 @@ pub(crate) struct ReferenceArgs {
     #[arg(long, conflicts_with_all = ["set", "over", "quantity", "plot"])]
     pub(crate) list: bool,
 
-    /// An input, as a number, a vector of JSON, or a word: energy=1, order=all
-    #[arg(long, value_name = "KEY=VALUE", allow_hyphen_values = true)]
+    /// Inputs, each a number, a vector of JSON, or a word: energy=1 sigma_t=0.5 order=all
+    #[arg(long, value_name = "KEY=VALUE", num_args = 1..)]
     pub(crate) set: Vec<String>,
 
     /// The input to vary, from first to last value; bins=A..B:N sets t0 and t1 to N bins
