@@ -10,9 +10,9 @@ use crate::stress::world::World;
 /// Independent batches of a comparison with exact values.
 pub const BATCHES: u64 = 64;
 
-/// A right answer is one within 1 %, with 99 % confidence; sound programs are called different with
-/// a chance of 1e-8.
-pub const CRITERION: Criterion = Criterion { margin: 0.01, confidence: 0.99, level: 1e-8 };
+/// A right answer is one within 2 %, with 99 % confidence; sound programs are called different with
+/// a chance of 1e-8. (Smaller errors are the experiments' business: here something breaks or not.)
+pub const CRITERION: Criterion = Criterion { margin: 0.02, confidence: 0.99, level: 1e-8 };
 
 /// Sums of one channel over pixels and cells, with their exact values.
 pub struct Expected {

@@ -8,8 +8,9 @@
 //!   sound program is called different is 1e-8 for each row);
 //! * **an exact law**: two renders with the same random numbers are the same to the bit (or to a
 //!   stated tolerance), after the scaling that physics asks for. All lengths × 2^k with all
-//!   coefficients × 2^−k, all powers × 2^k, all refractive indices × 2: no rounding changes, so
-//!   nothing in the programs may know the size of a metre or of a watt;
+//!   coefficients × 2^−k, all powers × 2^k, all refractive indices × 4 (even powers of two, where roots
+//!   are taken): no rounding changes, so nothing in the programs may know the size of a metre or of a
+//!   watt;
 //! * **a clear error**: its text names the part that is wrong and says what to do.
 //!
 //! Whatever a case compares, every render on the way must be sound ([`shot`]): all numbers finite,

@@ -73,7 +73,7 @@ impl Pencil {
         let (samples, photons) = if wide {
             (1, 5000)
         } else if method == Method::BeamsShort {
-            (16, 40_000)
+            (64, 4000)
         } else {
             (512, 1)
         };
@@ -197,16 +197,12 @@ impl Pencil {
             ray_direction,
             ray_length: self.length(),
         })?;
-        // Feet of the common perpendicular: s + t cos ψ = −w·d, s cos ψ + t = ... solved for both.
-        let d = self.light();
-        let norm = ray_direction.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let omega = ray_direction.map(|x| x / norm);
-        let dot = |a: Point, b: Point| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        // Feet of the common perpendicular, by n = d × ω: nothing cancels for small angles.
+        let (d, omega) = (self.light(), ray_direction);
+        let n = cross(d, omega);
         let w = [0, 1, 2].map(|i| EYE[i] - beam_origin[i]);
-        let (c, wd, wo) = (dot(d, omega), dot(w, d), dot(w, omega));
-        let sine_squared = (1.0 - c) * (1.0 + c);
-        let on_ray = (c * wd - wo) / sine_squared;
-        let on_beam = (wd - c * wo) / sine_squared;
+        let on_ray = dot(cross(w, d), n) / dot(n, n) * dot(omega, omega).sqrt();
+        let on_beam = dot(cross(w, omega), n) / dot(n, n);
         Ok((value, on_ray + on_beam))
     }
 
@@ -222,6 +218,10 @@ impl Pencil {
         let (start, width) = self.window();
         let edge = |index: usize| start + index as f64 * width;
         let t0 = if cell == 0 { 0.0 } else { edge(cell - 1) };
+        // Nothing arrives before it is emitted.
+        if cell <= BINS && edge(cell) <= 0.0 {
+            return Ok(0.0);
+        }
         let t1 = if cell > BINS { 4.0 * self.length() } else { edge(cell) };
         let (energy, speed, g, radius) = (1.0, 1.0, self.fog.g, self.radius);
         let (sigma_s, sigma_t) = (self.fog.sigma_s[0], self.fog.sigma_s[0] + self.fog.sigma_a[0]);
@@ -264,6 +264,14 @@ impl Pencil {
             })?
         })
     }
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Point, b: Point) -> Point {
+    [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }
 
 /// Where the camera stands.

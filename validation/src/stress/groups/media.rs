@@ -15,22 +15,23 @@ use crate::stress::world::{Film, Fog, Unit, World};
 use crate::stress::worlds::{foggy_furnace, steady};
 
 /// Why short beams are left out of thick media.
-const NO_SHORT: &str = "a short beam gets so deep by chance only: no 1 % within the budget (beams-2d shares the kernel)";
+const NO_SHORT: &str = "a short beam gets so deep by chance only: no 2 % within the budget (beams-2d shares the kernel)";
 
 pub(super) fn cases() -> Vec<Case> {
     [thickness(), albedo(), phase(), colour()].into_iter().flatten().collect()
 }
 
-/// Photons and passes that resolve 1 % of the usual single scattering.
+/// Photons and passes that resolve 2 % of the usual single scattering.
 pub(super) fn effort(method: Method) -> (Work, u64) {
     let work = Work { samples: 4, photons: 8000, radius: None, surface_radius: None };
     match method {
-        Method::Path => (Work { samples: 1024, ..work }, 2),
-        Method::Light => (Work { photons: 100_000, ..work }, 1),
+        Method::Path => (Work { samples: 1024, ..work }, 1),
+        // Its variance is infinite with the eye in fog (the plan says so): it converges slowly.
+        Method::Light => (Work { photons: 400_000, ..work }, 1),
         // A pair costs the 3D kernel a quadrature.
-        Method::Beams3d => (Work { samples: 1, photons: 16_000, ..work }, 3),
-        Method::BeamsShort => (Work { samples: 1, photons: 16_000, ..work }, 12),
-        Method::Beams1d | Method::Beams2d => (Work { samples: 1, photons: 16_000, ..work }, 6),
+        Method::Beams3d => (Work { samples: 1, photons: 16_000, ..work }, 2),
+        Method::BeamsShort => (Work { samples: 1, photons: 16_000, ..work }, 6),
+        Method::Beams1d | Method::Beams2d => (Work { samples: 1, photons: 16_000, ..work }, 3),
     }
 }
 
@@ -80,7 +81,11 @@ fn thickness() -> Vec<Case> {
         .without(Method::BeamsShort, NO_SHORT)
         .without(
             Method::Beams3d,
-            "1 % of so few photons' light costs minutes of quadratures: thickness/pencil-1e2 instead",
+            "2 % of so few photons' light costs minutes of quadratures: thickness/pencil-1e2 instead",
+        )
+        .without(
+            Method::Light,
+            "infinite variance with the eye in fog (the plan says so): thickness/pencil-1e2 instead",
         ),
     );
     cases.push(Case::new(
@@ -153,7 +158,8 @@ fn wall(seed: u64, method: Method, sigma_t: f64) -> Result<Finding> {
     let contrast = LinearContrast { name: "all light".into(), pixels: (0..4).collect(), weights };
     // The spot's rim is 20 free paths away: e^-20 of the light.
     let expected = Expected::grey(vec![contrast], vec![(4.0 * radiance, 1e-5 * radiance)]);
-    let work = Work { samples: 64, photons: 20_000, radius: Some(radius), surface_radius: None };
+    let photons = if method == Method::Light { 200_000 } else { 100_000 };
+    let work = Work { samples: 64, photons, radius: Some(radius), surface_radius: None };
     agrees(&Shot::new(&world, method, &work)?, seed, 1, &expected)
 }
 

@@ -60,13 +60,13 @@ pub(super) fn cases() -> Vec<Case> {
         ));
     }
     cases.push(Case::new(
-        "scale/index-2",
+        "scale/index-4",
         "time that follows lengths where it should follow optical path lengths",
         |setup, method| {
             let work = Work { photons: 2000, ..Work::LITTLE };
             let image =
                 |eta| Single { eta, ..Single::USUAL }.shot(method, &work)?.render(setup.seed, 4);
-            Ok(same_to_the_bit(&image(1.0)?, &image(2.0)?, 1.0))
+            Ok(same_to_the_bit(&image(1.0)?, &image(4.0)?, 1.0))
         },
     ));
     cases.push(Case::of_no_method("scale/too-large", "overflow of squares without a word", |_| {
