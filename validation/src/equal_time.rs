@@ -32,6 +32,9 @@ use crate::reference_cube::{Provenance, ReferenceCube};
 use crate::statistics::split::Estimate;
 use crate::statistics::{Gram, RatioInterval, Split, ratio_of_means, student};
 
+/// A defect of all light that the test for bias must find.
+pub const CONTROL: f64 = 1.1;
+
 /// Confidence of all intervals.
 pub const CONFIDENCE: f64 = 0.95;
 
@@ -72,13 +75,19 @@ pub struct MethodResult {
     /// Squared bias by the pixel-wise estimate, over the signal; its standard error and interval
     /// are meaningful where pixels are independent.
     pub pixel_bias: Estimate,
+    /// The same if all light were [`CONTROL`] times as strong: a negative control.
+    pub control_bias: Estimate,
 }
 
 impl MethodResult {
     /// z of the pixel-wise squared bias.
     pub fn bias_z(&self) -> f64 {
-        let Estimate { value, standard_error, .. } = self.pixel_bias;
-        if value == 0.0 { 0.0 } else { value / standard_error }
+        z(&self.pixel_bias)
+    }
+
+    /// The same of the negative control.
+    pub fn control_z(&self) -> f64 {
+        z(&self.control_bias)
     }
 
     /// Mean over replicates.
@@ -90,6 +99,10 @@ impl MethodResult {
     pub fn work(&self) -> Vec<f64> {
         self.replicates.iter().map(|r| r.nmse * r.cpu_seconds).collect()
     }
+}
+
+fn z(estimate: &Estimate) -> f64 {
+    if estimate.value == 0.0 { 0.0 } else { estimate.value / estimate.standard_error }
 }
 
 /// An equal-time comparison.
@@ -214,6 +227,11 @@ impl EqualTimePlan<'_> {
             ValidationError::unusable("equal time", "needs three replicates and a lit reference")
         };
         let errors = Errors::new(&cubes, self.reference);
+        let mut stronger = cubes;
+        for cube in &mut stronger {
+            cube.scale(CONTROL);
+        }
+        let control = Errors::new(&stronger, self.reference);
         let noise = self.reference.noise(|pixel| self.reference.mask[pixel]);
         let noise_whole = self.reference.noise(|_| true);
         let split = errors.judged.split(&noise, CONFIDENCE).ok_or_else(too_few)?;
@@ -232,6 +250,7 @@ impl EqualTimePlan<'_> {
             split,
             split_whole,
             pixel_bias: errors.pixel_bias(noise.signal()),
+            control_bias: control.pixel_bias(noise.signal()),
         })
     }
 }
@@ -279,6 +298,11 @@ impl EqualTime {
     /// P(z at least as large) of a method whose pixels are independent.
     pub fn bias_p(method: &MethodResult) -> f64 {
         student::upper_tail(method.bias_z(), 1e6)
+    }
+
+    /// The same of the negative control.
+    pub fn control_p(method: &MethodResult) -> f64 {
+        student::upper_tail(method.control_z(), 1e6)
     }
 
     /// A table for people, one line each.

@@ -57,13 +57,14 @@ pub fn all(effort: Effort) -> Experiments {
 }
 
 /// The rows that the quick suite keeps: each case, method, and kind of medium once.
-const QUICK: [&str; 7] = [
+const QUICK: [&str; 8] = [
     "matrix/lamp/coloured/path",
     "matrix/floor/absorbing/path",
     "matrix/fog/forward/path",
     "matrix/fog/isotropic/beams-1d",
     "matrix/fog/backward/beams-2d",
     "matrix/ball/coloured/path",
+    "matrix/ball/backward/light",
     "matrix/room/isotropic/beams-1d",
 ];
 

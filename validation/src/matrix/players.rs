@@ -3,6 +3,7 @@
 use std::num::NonZeroU32;
 
 use tpb_beams::{BeamLength, BeamOptions, KernelChoice, Temporal};
+use tpb_light::LightOptions;
 use tpb_path::PathOptions;
 
 use super::cases::Case;
@@ -38,6 +39,8 @@ pub struct Budget {
 pub enum Family {
     /// Paths from the camera.
     Path,
+    /// Photons, connected to the eye.
+    Light,
     /// Photon beams.
     Beams {
         /// The kernel.
@@ -71,8 +74,9 @@ pub enum Kernels {
 }
 
 /// All players.
-pub const PLAYERS: [Player; 9] = [
+pub const PLAYERS: [Player; 10] = [
     Player { name: "path", family: Family::Path },
+    Player { name: "light", family: Family::Light },
     beams("beams-1d", Blur::OneD, BeamLength::Long, Temporal::Exact),
     beams("beams-1d-short", Blur::OneD, BeamLength::Short, Temporal::Exact),
     beams("beams-2d", Blur::TwoD, BeamLength::Long, Temporal::Exact),
@@ -119,7 +123,7 @@ impl Player {
     /// How it blurs what is scattered in media.
     pub fn blur(&self) -> Option<Blur> {
         match self.family {
-            Family::Path => None,
+            Family::Path | Family::Light => None,
             Family::Beams { blur, .. } => Some(blur),
         }
     }
@@ -134,6 +138,9 @@ impl Player {
         match self.family {
             Family::Path => {
                 Estimator::Path(PathOptions { samples_per_pass: NonZeroU32::new(budget.paths) })
+            }
+            Family::Light => {
+                Estimator::Light(LightOptions { photons_per_pass: Some(budget.photons) })
             }
             Family::Beams { blur, length, temporal } => Estimator::Beams(BeamOptions {
                 kernel: Some(match blur {

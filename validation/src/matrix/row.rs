@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::cases::Case;
 use super::medium::MatrixMedium;
-use super::players::Player;
+use super::players::{Family, Player};
 use crate::comparison::Comparison;
 use crate::contrasts::{LinearContrast, standard};
 use crate::cube::Cube;
@@ -44,7 +44,15 @@ pub(super) fn contrasts(
                 .map(|(name, members)| (name, members.iter().map(place).collect()))
                 .collect();
             let prefix = if channels == 1 { "" } else { ["red: ", "green: ", "blue: "][channel] };
-            let shares = if channels == 1 { case.shares() } else { case.shares().min(4) };
+            // Photons connected to the eye have the largest variance.
+            let most = if player.family == Family::Light {
+                3
+            } else if channels == 3 {
+                4
+            } else {
+                8
+            };
+            let shares = case.shares().min(most);
             let mut list = standard(shape, &groups, shares);
             if !player.is_right_in_time() {
                 // Energy, and that of blocks of pixels.

@@ -27,7 +27,7 @@ use crate::scenes::{View, null_sphere, only_depth, unit_point};
 
 const DISTANCE: f64 = 2.0;
 const REFLECTANCE: f64 = 0.6;
-const LAMP: DVec3 = DVec3::new(0.9, 0.5, 1.0);
+const LAMP: DVec3 = DVec3::new(0.25, 0.15, 1.2);
 const NULL_RADIUS: f64 = 0.25;
 
 /// The case.
@@ -59,7 +59,7 @@ impl Case for Floor {
     }
 
     fn frame(&self) -> Frame {
-        let time = TimeSpec { start_opl: 2.9, bin_width_opl: 0.1, bins: 24 };
+        let time = TimeSpec { start_opl: 2.75, bin_width_opl: 0.05, bins: 24 };
         Frame { side: 4, fov: 40.0, time }
     }
 
@@ -109,8 +109,10 @@ impl Case for Floor {
         Ok(Expected { fine: cube(800), coarse: cube(500) })
     }
 
-    fn budget(&self, _: &Player, _: &MatrixMedium, effort: Effort) -> Budget {
-        Budget { paths: effort.pick(1000, 2000), photons: 10_000, passes: 1, radius: 0.1 }
+    fn budget(&self, player: &Player, _: &MatrixMedium, effort: Effort) -> Budget {
+        // Few photons from the lamp land where the camera looks; beams do not need them.
+        let photons = if player.family == Family::Light { 1_200_000 } else { 10_000 };
+        Budget { paths: effort.pick(1000, 2000), photons, passes: 1, radius: 0.1 }
     }
 
     fn twins(&self, player: &Player, _: &MatrixMedium) -> Vec<Sabotage> {

@@ -126,8 +126,8 @@ impl Case for Fog {
         medium.scatters()
     }
 
-    fn admits(&self, _: Family) -> bool {
-        true
+    fn admits(&self, family: Family) -> bool {
+        family != Family::Light
     }
 
     fn kernels(&self) -> Kernels {

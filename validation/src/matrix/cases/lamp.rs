@@ -77,8 +77,14 @@ impl Case for Lamp {
         Ok(Expected { fine: cube(800), coarse: cube(500) })
     }
 
-    fn budget(&self, _: &Player, _: &MatrixMedium, effort: Effort) -> Budget {
-        Budget { paths: effort.pick(1000, 2000), photons: 10_000, passes: 1, radius: 0.1 }
+    fn budget(&self, player: &Player, _: &MatrixMedium, effort: Effort) -> Budget {
+        // A photon from anywhere on the lamp is connected to the eye; beams leave none here.
+        let photons = if player.family == Family::Light { 400_000 } else { 10_000 };
+        Budget { paths: effort.pick(1000, 2000), photons, passes: 1, radius: 0.1 }
+    }
+
+    fn shares(&self) -> usize {
+        4
     }
 
     fn twins(&self, _: &Player, medium: &MatrixMedium) -> Vec<Sabotage> {

@@ -1,4 +1,4 @@
-//! All orders: a box of fog with a null boundary, a diffuse floor inside it, a point lamp above.
+//! All orders: a box of fog with a null boundary, a diffuse floor inside it, a spot above.
 //!
 //! No exact value is known. Methods are compared with path tracing, both with their noise. Camera
 //! and lamp are outside the fog, where no connection has infinite variance. Beams blur by a radius
@@ -8,8 +8,8 @@ use glam::DVec3;
 use tpb_optics::Rgb;
 use tpb_scene::geometry::{Outline, Planar};
 use tpb_scene::{
-    Bsdf, IntegratorSpec, MediumBoundary, MediumId, Primitive, Reflector, SceneParts, ShapePart,
-    TimeSpec,
+    Bsdf, EmitterKind, EmitterPart, IntegratorSpec, MediumBoundary, MediumId, Primitive, Reflector,
+    SceneParts, ShapePart, TimeSpec,
 };
 
 use super::{Budget, Case, Family, MatrixMedium, Player};
@@ -17,7 +17,7 @@ use crate::experiment::Effort;
 use crate::matrix::players::Kernels;
 use crate::matrix::view::Frame;
 use crate::sabotage::Sabotage;
-use crate::scenes::{View, unit_point};
+use crate::scenes::View;
 
 const CENTRE: DVec3 = DVec3::new(0.0, 0.0, 2.5);
 const LAMP: DVec3 = DVec3::new(0.4, 1.8, 2.2);
@@ -27,6 +27,18 @@ const RADIUS: f64 = 0.03;
 
 /// The case.
 pub(super) struct Room;
+
+/// A spot that lights the whole box evenly: 66 degrees from its axis reach all corners.
+fn lamp() -> EmitterPart {
+    let kind = EmitterKind::Spot {
+        position: LAMP,
+        axis: (CENTRE - LAMP).normalize(),
+        intensity: Rgb::ONE,
+        cos_cutoff: 70.0_f64.to_radians().cos(),
+        cos_beam: 66.0_f64.to_radians().cos(),
+    };
+    EmitterPart { name: "spot".into(), kind, stated_medium: None }
+}
 
 /// A square of half-width `half`, its normal along `towards`.
 fn square(centre: DVec3, towards: DVec3, half: f64) -> Primitive {
@@ -72,7 +84,7 @@ impl Case for Room {
     fn parts(&self, view: &View, medium: &MatrixMedium) -> SceneParts {
         let mut parts = view.parts();
         parts.media = vec![medium.medium(DENSITY)];
-        parts.emitters = vec![unit_point(LAMP)];
+        parts.emitters = vec![lamp()];
         let faces = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z];
         let front = Reflector::Diffuse(Rgb::splat(0.5));
         parts.shapes = vec![
