@@ -23,7 +23,7 @@ use crate::statistics::{Batches, Criterion, Target, judge};
 /// Margin of methods without bias: both are noisy.
 const UNBIASED: f64 = 0.01;
 /// Margin of beams: what their radius blurs is in it.
-const BLURRED: f64 = 0.02;
+const BLURRED: f64 = 0.015;
 
 /// The comparison.
 pub struct Pair {

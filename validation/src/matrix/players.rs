@@ -28,6 +28,8 @@ pub struct Budget {
     pub paths: u32,
     /// Photons that are followed to surfaces and, as beams, through media.
     pub photons: u64,
+    /// Camera rays of each pixel that gather beams.
+    pub rays: u32,
     /// Passes of all that into which a batch is divided.
     pub passes: u64,
     /// Radius of beams and of the discs around surface photons \[m\].
@@ -156,7 +158,7 @@ impl Player {
                 surface_radius_exponent: Some(0.0),
                 photons_per_pass: Some(budget.photons),
                 beam_photons: Some(budget.photons),
-                gather_samples: Some(1),
+                gather_samples: Some(budget.rays),
                 surface_samples: Some(budget.paths),
                 ..BeamOptions::default()
             }),

@@ -152,7 +152,13 @@ impl Case for Ball {
             (false, "backward" | "coloured") => effort.pick(8, 14),
             (false, _) => effort.pick(6, 8),
         };
-        Budget { paths: effort.pick(10_000, 14_000), photons: 100_000, passes, radius: 0.1 }
+        Budget {
+            paths: effort.pick(10_000, 14_000),
+            photons: 100_000,
+            rays: 1,
+            passes,
+            radius: 0.1,
+        }
     }
 
     fn twins(&self, player: &Player, medium: &MatrixMedium) -> Vec<Sabotage> {

@@ -112,7 +112,7 @@ impl Case for Floor {
     fn budget(&self, player: &Player, _: &MatrixMedium, effort: Effort) -> Budget {
         // Few photons from the lamp land where the camera looks; beams do not need them.
         let photons = if player.family == Family::Light { 1_200_000 } else { 10_000 };
-        Budget { paths: effort.pick(1000, 2000), photons, passes: 1, radius: 0.1 }
+        Budget { paths: effort.pick(1000, 2000), photons, rays: 1, passes: 1, radius: 0.1 }
     }
 
     fn twins(&self, player: &Player, _: &MatrixMedium) -> Vec<Sabotage> {

@@ -161,10 +161,10 @@ impl Case for Fog {
         // Few photons are deflected much where the phase function is peaked.
         let passes = match (player.is_baseline(), medium.name) {
             (true, _) => effort.pick(1, 2),
-            (false, "forward") => effort.pick(16, 25),
-            (false, _) => effort.pick(6, 10),
+            (false, "forward") => effort.pick(25, 35),
+            (false, _) => effort.pick(10, 14),
         };
-        Budget { paths: 10_000, photons: 40_000, passes, radius: RADIUS }
+        Budget { paths: 10_000, photons: 10_000, rays: 4, passes, radius: RADIUS }
     }
 
     /// From columns that look towards the lamp to those that look away.

@@ -80,7 +80,7 @@ impl Case for Lamp {
     fn budget(&self, player: &Player, _: &MatrixMedium, effort: Effort) -> Budget {
         // A photon from anywhere on the lamp is connected to the eye; beams leave none here.
         let photons = if player.family == Family::Light { 400_000 } else { 10_000 };
-        Budget { paths: effort.pick(1000, 2000), photons, passes: 1, radius: 0.1 }
+        Budget { paths: effort.pick(1000, 2000), photons, rays: 1, passes: 1, radius: 0.1 }
     }
 
     fn shares(&self) -> usize {

@@ -107,11 +107,15 @@ impl Case for Room {
     }
 
     fn budget(&self, player: &Player, _: &MatrixMedium, effort: Effort) -> Budget {
-        if player.is_baseline() {
-            Budget { paths: 10_000, photons: 0, passes: effort.pick(1, 3), radius: RADIUS }
-        } else {
-            Budget { paths: 400, photons: 100_000, passes: effort.pick(1, 3), radius: RADIUS }
-        }
+        let few = effort.pick(1, 2);
+        let (photons, rays, passes) = match player.family {
+            Family::Path => (0, 0, few),
+            Family::Light => (100_000, 0, few),
+            // Pixels are wide here: rays are as many as photons allow.
+            Family::Beams { .. } => (20_000, 8, effort.pick(4, 5)),
+        };
+        let paths = if player.is_baseline() { 10_000 } else { 100 };
+        Budget { paths, photons, rays, passes, radius: RADIUS }
     }
 
     fn shares(&self) -> usize {
