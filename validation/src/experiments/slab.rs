@@ -4,7 +4,7 @@
 //! through either face is counted by a visitor of the photon tracer, by its OPL. The path tracer
 //! answers the same by reciprocity: seen at a right angle, a slab in front of a wide lamp of
 //! radiance 1 has the radiance of the share of light that would cross it, and with the lamp on the
-//! camera's side, of the share that would come back. Lamps stand [`GAP`] from the slab, which
+//! camera's side, of the share that would come back. Lamps stand 0.1 mm from the slab, which
 //! delays light by less than 1e-3 of a bin. Both are noisy, without bias, and share no estimator:
 //! one connects to lights, the other lets photons fly.
 //!

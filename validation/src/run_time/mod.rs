@@ -12,7 +12,7 @@
 //! falls as 1/time. Preparation of the method counts; it is shown apart.
 //!
 //! The slope of ln error over ln CPU seconds is fitted to the checkpoints at which the error is
-//! resolved ([`slope`]): −1 for independent samples without bias, −4/5 in the long run for beams
+//! resolved: −1 for independent samples without bias, −4/5 in the long run for beams
 //! whose radius shrinks at its best rate, 0 once a bias that does not shrink is all that is left.
 
 mod draw;
