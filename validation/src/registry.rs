@@ -47,7 +47,7 @@ fn sound(effort: Effort) -> Experiments {
         mirrors::all(effort),
         infinite_medium::all(effort),
         lens::all(effort),
-        glass::all(),
+        glass::all(effort),
         slab::all(effort),
         sphere::all(effort),
         spot::all(effort),

@@ -156,9 +156,8 @@ impl Experiment for SlabEchoes {
         let segment = Sabotage::NullSegment(0.5);
         match (self.filled, effort) {
             (true, Effort::Full) => vec![segment, Sabotage::TRANSMITTANCE],
-            (true, Effort::Quick) => vec![segment],
             (false, Effort::Full) => vec![Sabotage::LATE],
-            (false, Effort::Quick) => vec![],
+            (_, Effort::Quick) => vec![],
         }
     }
 

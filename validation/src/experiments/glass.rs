@@ -41,7 +41,7 @@ const SIDE: usize = 6;
 const FOV: f64 = 50.0;
 const LAMP: f64 = 0.6;
 const NULL_RADIUS: f64 = 0.25;
-const RADIUS: f64 = 0.15;
+const RADIUS: f64 = 0.25;
 const POINTS: usize = 64;
 const TIME: TimeSpec = TimeSpec { start_opl: 0.15, bin_width_opl: 0.225, bins: 40 };
 
@@ -85,13 +85,16 @@ pub struct GlassFog {
 }
 
 /// Each method.
-pub fn all() -> Experiments {
-    vec![
+pub fn all(effort: Effort) -> Experiments {
+    let mut list: Experiments = vec![
         Arc::new(GlassFog { who: Diver::Path }),
-        Arc::new(GlassFog { who: Diver::Beams }),
         Arc::new(GlassClock { who: Diver::Path }),
         Arc::new(GlassClock { who: Diver::Beams }),
-    ]
+    ];
+    if effort == Effort::Full {
+        list.push(Arc::new(GlassFog { who: Diver::Beams }));
+    }
+    list
 }
 
 impl GlassFog {
@@ -185,8 +188,7 @@ impl Experiment for GlassFog {
         let segment = Sabotage::NullSegment(ETA * NULL_RADIUS);
         match (self.who, effort) {
             (Diver::Path, Effort::Full) => vec![segment, Sabotage::LATE],
-            (Diver::Beams, Effort::Quick) => vec![],
-            (_, _) => vec![segment],
+            _ => vec![segment],
         }
     }
 
@@ -194,12 +196,14 @@ impl Experiment for GlassFog {
         let scene = Self::scene(context)?;
         let (expected, coarser) =
             (self.expected(&scene, POINTS)?, self.expected(&scene, POINTS / 2)?);
-        let contrasts = standard(&expected, &blocks((SIDE, SIDE), (3, 1)), 5);
         let path = self.who == Diver::Path;
+        let shares = context.effort.pick(3, 5);
+        let contrasts = standard(&expected, &blocks((SIDE, SIDE), (2, 1)), shares);
+        let passes = if path { context.effort.pick(1, 2) } else { 8 };
         Comparison {
             scene: &scene,
             estimator: self.who.estimator(),
-            plan: BatchPlan { batches: 64, passes: if path { 2 } else { 6 }, seed: context.seed },
+            plan: BatchPlan { batches: 64, passes, seed: context.seed },
             expected: &expected,
             coarser: Some(&coarser),
             contrasts: &contrasts,

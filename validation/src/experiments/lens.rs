@@ -100,7 +100,7 @@ impl LaserThroughBall {
         let mut estimator = self.who.estimator(1, 20_000, BLUR);
         if let Estimator::Beams(options) = &mut estimator {
             // The light is in few places of the image, which camera paths must find.
-            options.surface_samples = Some(300);
+            options.surface_samples = Some(200);
         }
         estimator
     }

@@ -176,7 +176,7 @@ impl Experiment for MirrorLamp {
 
     fn run(&self, context: &Context) -> Result<Outcome> {
         let sights = Self::sights(context)?;
-        let plan = BatchPlan { batches: 4, passes: 1, seed: context.seed };
+        let plan = BatchPlan { batches: 32, passes: 1, seed: context.seed };
         let (estimator, criterion) = (self.who.estimator(4), context.unbiased());
         let mut outcome = Sights { estimator, plan, criterion, at: &sights }.run(context)?;
         outcome.false_alarm = 0.0;

@@ -183,7 +183,7 @@ impl Experiment for ThroughGlass {
         } else {
             expected.cosines
         };
-        let passes = 3;
+        let passes = context.effort.pick(2, 3);
         Comparison {
             scene: &scene,
             estimator: self.who.estimator(2500, 150_000, BLUR),

@@ -99,8 +99,8 @@ pub fn all(effort: Effort) -> Experiments {
     let one = |who, order, filled| Arc::new(SphereOrder { who, order, filled }) as _;
     let mut list: Experiments =
         (1..=effort.pick(4, 8)).map(|order| one(Insider::Path, order, false)).collect();
-    list.push(one(Insider::Path, 3, true));
     if effort == Effort::Full {
+        list.push(one(Insider::Path, 3, true));
         for who in [Insider::Beams, Insider::Light] {
             list.extend([one(who, 2, false), one(who, 3, true)]);
         }
