@@ -97,10 +97,11 @@ impl LaserThroughBall {
     }
 
     fn estimator(self) -> Estimator {
-        let mut estimator = self.who.estimator(1, 20_000, BLUR);
+        let mut estimator = self.who.estimator(1, 60_000, BLUR);
         if let Estimator::Beams(options) = &mut estimator {
             // The light is in few places of the image, which camera paths must find.
             options.surface_samples = Some(200);
+            options.photons_per_pass = Some(20_000);
         }
         estimator
     }
@@ -186,7 +187,7 @@ impl Experiment for LaserThroughBall {
         let scene = self.scene(context)?;
         let (expected, coarser) =
             (self.expected(&scene, POINTS)?, self.expected(&scene, POINTS / 2)?);
-        let contrasts = standard(&expected, &blocks((PIXELS, PIXELS), (2, 1)), 3);
+        let contrasts = standard(&expected, &blocks((PIXELS, PIXELS), (2, 1)), 2);
         Comparison {
             scene: &scene,
             estimator: self.estimator(),

@@ -156,9 +156,10 @@ impl Experiment for ThroughGlass {
         )
     }
 
-    fn twins(&self, _: Effort) -> Vec<Sabotage> {
+    fn twins(&self, effort: Effort) -> Vec<Sabotage> {
         match (self.inside, self.who) {
-            (true, ..) => vec![Sabotage::EtaSquared],
+            (true, ..) if effort == Effort::Full => vec![Sabotage::EtaSquared],
+            (true, ..) => vec![],
             (false, Finder::Path) => vec![Sabotage::Cosine],
             (false, ..) => vec![Sabotage::LATE],
         }
@@ -183,7 +184,7 @@ impl Experiment for ThroughGlass {
         } else {
             expected.cosines
         };
-        let passes = context.effort.pick(2, 3);
+        let passes = if self.who == Finder::Beams { 5 } else { 3 };
         Comparison {
             scene: &scene,
             estimator: self.who.estimator(2500, 150_000, BLUR),
