@@ -5,7 +5,7 @@
 //! * **Bias.** Measured bias is the mean estimate less the exact single scattering; predicted bias
 //!   is the exact expected blur less the same ([`crate::expected`]). For several radii their ratio
 //!   must be 1, and the exponent of a power law fitted to them that of the prediction, which is 2
-//!   for small radii (checked without chance to 1 %). Stated margin: 10 % of bias and of exponent (20 % in quick runs).
+//!   for small radii (checked without chance to 1 %). Stated margin: 10 % of bias and of exponent (20 % in quick runs and for 3D).
 //! * **Variance.** Of one pass, for all light and for a bin of time: a ray meets a beam with a
 //!   probability ∝ R, and the value goes as 1/R, so that binned variance is ∝ 1/(N R) for each
 //!   kernel. Stated margin: 10 % of both exponents. As R is small beside the light's distance, terms
@@ -40,8 +40,9 @@ const QUICK_MARGIN: f64 = 0.2;
 /// Groups of passes.
 const BATCHES: usize = 32;
 
-const SIDE: usize = 4;
 const BIAS_TIME: TimeSpec = TimeSpec { start_opl: 0.0, bin_width_opl: 6.4, bins: 1 };
+/// Few in a pass: each pass has camera rays of its own, whose places are half of the noise.
+const BIAS_PHOTONS: u64 = 5_000;
 const FULL_RADII: [f64; 4] = [0.32, 0.37, 0.43, 0.5];
 const QUICK_RADII: [f64; 2] = [0.36, 0.5];
 
@@ -103,14 +104,23 @@ impl Blur {
         })
     }
 
+    /// Wide spheres reach the ends of most beams and rays, whose pairs take a quadrature: they are
+    /// judged by the quick run's radii and margin, in fewer pixels.
+    fn is_quick(self, context: &Context) -> bool {
+        context.effort == Effort::Quick
+            || (self.what == What::Bias && self.kernel == KernelChoice::ThreeD)
+    }
+
     fn bias(self, context: &Context) -> Result<Outcome> {
-        let radii = context.effort.pick(&QUICK_RADII[..], &FULL_RADII[..]);
+        let quick = self.is_quick(context);
+        let (radii, passes) = if quick { (&QUICK_RADII[..], 30) } else { (&FULL_RADII[..], 40) };
+        let side = if self.kernel == KernelChoice::ThreeD { 2 } else { 4 };
         let integrator = only_depth(2);
-        let view = View { pixels: SIDE, fov: 50.0, time: Some(BIAS_TIME), integrator };
+        let view = View { pixels: side, fov: 50.0, time: Some(BIAS_TIME), integrator };
         let scene = infinite_fog(context, &view, &FOG, LIGHT)?;
         let energy = |blur| -> Result<f64> {
             let of = SingleScattering { fog: FOG, light: LIGHT, blur };
-            Ok(of.cube(&scene.sensor, SIDE, BIAS_TIME, 4)?.values.iter().sum())
+            Ok(of.cube(&scene.sensor, side, BIAS_TIME, 4)?.values.iter().sum())
         };
         let sharp = energy(None)?;
         let predicted = |radius: f64| Ok(energy(Some((self.kernel, radius)))? / sharp - 1.0);
@@ -119,15 +129,14 @@ impl Blur {
         let small = small.into_iter().collect::<Result<Vec<_>>>()?;
         let limit = slope(&small);
 
-        let passes = context.effort.pick(1, 4);
         let plan = BatchPlan { batches: BATCHES as u64, passes, seed: context.seed };
         let mut measured = Vec::new();
         for &radius in radii {
             let (mut column, layout) = (Vec::new(), context.layout(&scene.film)?);
-            batches(&scene, &self.beams(radius, 50_000), layout, &plan, |cube| {
+            batches(&scene, &self.beams(radius, BIAS_PHOTONS), layout, &plan, |cube| {
                 let mut cube = cube.clone();
                 cube.scale(context.estimate_factor());
-                let inside = (0..SIDE * SIDE).map(|pixel| cube.pixel_bins(pixel)[0]);
+                let inside = (0..side * side).map(|pixel| cube.pixel_bins(pixel)[0]);
                 column.push(inside.sum::<f64>() / sharp - 1.0);
             })?;
             measured.push(column);
@@ -150,7 +159,7 @@ impl Blur {
         let name = |radius: &f64| format!("bias over its prediction, radius {radius}");
         let mut targets: Vec<Target> = radii.iter().map(|r| target(name(r), 1.0)).collect();
         targets.push(target("exponent of bias in the radius".into(), slope(&fitted)));
-        let judgement = judge(&targets, &values, &criterion(context));
+        let judgement = judge(&targets, &values, &self.criterion(context));
         let mut outcome: Outcome = judgement.into();
         outcome.notes.push(format!(
             "predicted exponent {:.3} here, {limit:.3} for small radii; bias {:.1} % to {:.1} %",
@@ -192,10 +201,10 @@ impl Blur {
             ["all light", "a bin"].map(|of| format!("exponent of variance {by}, {of}"))
         });
         let targets: Vec<Target> = names.map(|name| target(name, -1.0)).collect();
-        let mut outcome: Outcome = judge(&targets, &values, &criterion(context)).into();
+        let mut outcome: Outcome = judge(&targets, &values, &self.criterion(context)).into();
         let mut controls = Batches::new();
         (0..BATCHES).for_each(|batch| controls.push(of_wrong.pseudo.map_at(batch).to_vec()));
-        let control = judge(&targets[..2], &controls, &criterion(context));
+        let control = judge(&targets[..2], &controls, &self.criterion(context));
         outcome.notes.push(format!(
             "exponents {:.3} in the radius and {:.3} in the photons; control {:.3}, {:?}",
             outcome.contrasts[0].mean,
@@ -262,6 +271,12 @@ impl Blur {
         Ok(Exponents { pseudo, variances: variances.collect() })
     }
 
+    /// The stated margin.
+    fn criterion(self, context: &Context) -> Criterion {
+        let margin = if self.is_quick(context) { QUICK_MARGIN } else { MARGIN };
+        Criterion { margin, confidence: 0.99, level: context.level }
+    }
+
     fn draw(self, context: &Context, labels: (&str, &str), series: &[Series]) -> Result<()> {
         if context.sabotage.is_some() {
             return Ok(());
@@ -278,12 +293,6 @@ impl Blur {
         let path = folder.join("blur.svg");
         std::fs::write(&path, svg).map_err(|error| ValidationError::io(&path, error))
     }
-}
-
-/// The stated margin.
-fn criterion(context: &Context) -> Criterion {
-    let margin = context.effort.pick(QUICK_MARGIN, MARGIN);
-    Criterion { margin, confidence: 0.99, level: context.level }
 }
 
 /// Pseudo-values for all light and for a bin.
