@@ -10,12 +10,12 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use tpb_optics::{Rgb, Stream};
 use tpb_scene::geometry::{Outline, Planar};
 use tpb_scene::{
-    Bsdf, Emission, EmitterKind, EmitterPart, Hit, IntegratorSpec, Primitive, Reflector, Scene,
-    ShapePart,
+    Bsdf, Emission, EmitterKind, EmitterPart, FovAxis, Hit, IntegratorSpec, Primitive, Reflector,
+    Scene, Sensor, ShapePart,
 };
 
 use super::Draws;
@@ -40,6 +40,14 @@ pub(super) fn tests(samples: u64, seed: Draws) -> Result<Vec<Tested>> {
 fn scene(emitters: Vec<EmitterKind>, lamps: Vec<(Vec<Primitive>, f64)>) -> Result<Scene> {
     let view = View { pixels: 1, fov: 10.0, time: None, integrator: IntegratorSpec::default() };
     let mut parts = view.parts();
+    // Nobody looks; but a camera may not stand on a lamp.
+    parts.sensor = Sensor::perspective(
+        DAffine3::from_translation(DVec3::splat(1e3)),
+        view.fov,
+        FovAxis::X,
+        view.pixels,
+        view.pixels,
+    );
     let part = |kind| EmitterPart { name: "lamp".into(), kind, stated_medium: None };
     parts.emitters = emitters.into_iter().map(part).collect();
     parts.shapes = lamps
