@@ -98,12 +98,16 @@ impl PulseReport {
 impl Kernel {
     /// Constant over `width` bins from 0 on, for a window of `bins` bins.
     fn boxed(width: f64, bins: usize) -> Self {
-        let triangle = |x: f64| {
-            let x = x.clamp(-1.0, 1.0);
-            if x < 0.0 { 0.5 * (1.0 + x) * (1.0 + x) } else { 1.0 - 0.5 * (1.0 - x) * (1.0 - x) }
+        // The mean of 1 − |m − u| over u from 0 to the width, where positive: piece by piece, each
+        // linear. (The difference of primitives over the width cancels for short pulses.)
+        let weight = |m: f64| -> f64 {
+            let cuts = [0.0, m - 1.0, m, m + 1.0, width].map(|u| u.clamp(0.0, width));
+            let piece = |ends: &[f64]| {
+                (ends[1] - ends[0]) / width * (1.0 - (m - 0.5 * (ends[0] + ends[1])).abs()).max(0.0)
+            };
+            cuts.windows(2).map(piece).sum()
         };
         let last = width.ceil().min(bins as f64) as usize;
-        let weight = |m: f64| (triangle(width - m) - triangle(-m)) / width;
         let weights: Vec<f64> = (0..=last).map(|m| weight(m as f64)).collect();
         let above = (1.0 - weights.iter().sum::<f64>()).max(0.0);
         Self { back: 0, weights, below: 0.0, above }

@@ -69,13 +69,12 @@ impl Pencil {
     /// Renders and compares; exact values are multiplied by `factor` (1, but for sabotage).
     pub fn agrees(&self, method: Method, seed: u64, factor: f64) -> Result<Finding> {
         // Long beams of one laser are all alike; short ones end at random.
-        let wide = method == Method::Light;
-        let (samples, photons) = if wide {
-            (1, 5000)
-        } else if method == Method::BeamsShort {
-            (64, 4000)
-        } else {
-            (512, 1)
+        // A pair costs the 3D kernel a quadrature.
+        let (samples, photons) = match method {
+            Method::Light => (1, 5000),
+            Method::BeamsShort => (64, 4000),
+            Method::Beams3d => (128, 1),
+            Method::Path | Method::Beams1d | Method::Beams2d => (512, 1),
         };
         let work = Work { samples, photons, radius: Some(self.radius), surface_radius: None };
         let shot = Shot::new(&self.world(), method, &work)?;

@@ -57,7 +57,7 @@ pub struct Spot {
     /// Radiant intensity on the axis \[W/sr\]: 0, or from 1e-100 to 1e100.
     #[serde(default = "unit")]
     pub intensity: Colour<Light>,
-    /// Angle from the axis beyond which it is dark, in degrees.
+    /// Angle from the axis beyond which it is dark, in degrees, at least 0.01.
     #[serde(default = "twenty_degrees")]
     pub cutoff_angle: ConeAngle,
     /// Angle from the axis up to which it is fully bright, in degrees; 3/4 of `cutoff_angle`

@@ -23,7 +23,7 @@ pub enum Sensor {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Perspective {
-    /// Field of view in degrees, between 0 and 180 (exclusive), along `fov_axis`.
+    /// Field of view in degrees, at least 1e-10 and below 180, along `fov_axis`.
     pub fov: FieldOfView,
     /// The extent of the image that `fov` measures.
     #[serde(default)]

@@ -86,14 +86,16 @@ bounded_number!(
     "exclusiveMinimum": -1, "exclusiveMaximum": 1
 );
 bounded_number!(
-    /// A field of view in degrees, between 0 and 180 (exclusive).
-    FieldOfView, "an angle in degrees between 0 and 180 (exclusive)", |v| v > 0.0 && v < 180.0,
-    "exclusiveMinimum": 0, "exclusiveMaximum": 180
+    /// A field of view in degrees, from 1e-10 (f64 tells some 1e4 directions apart in it) to below
+    /// 180.
+    FieldOfView, "an angle in degrees, at least 1e-10 and below 180",
+    |v| (1e-10..180.0).contains(&v), "minimum": 1e-10, "exclusiveMaximum": 180
 );
 bounded_number!(
-    /// The half angle of a cone in degrees: greater than 0, at most 180.
-    ConeAngle, "an angle in degrees greater than 0 and at most 180", |v| v > 0.0 && v <= 180.0,
-    "exclusiveMinimum": 0, "maximum": 180
+    /// The half angle of a cone in degrees, 0.01 (below, its solid angle is lost in the cosine; a
+    /// laser has none) to 180.
+    ConeAngle, "an angle in degrees from 0.01 to 180", |v| (0.01..=180.0).contains(&v),
+    "minimum": 0.01, "maximum": 180
 );
 
 impl NonNegative {

@@ -5,6 +5,8 @@
 //! same, to the rounding of its sum, and what a fine row of bins holds adds up to what one bin over
 //! the same window holds.
 
+use tpb_film::Pulse;
+
 use crate::error::Result;
 use crate::stress::case::{Case, Finding, Method, Setup, Work};
 use crate::stress::laws::{near, refused};
@@ -107,6 +109,7 @@ pub(super) fn cases() -> Vec<Case> {
             Ok(Finding::exact(relative <= 1e-7, text).and(same_steady(&early, &late)))
         },
     ));
+    cases.extend(pulses());
     cases.push(Case::of_no_method(
         "time/bins-narrower-than-rounding",
         "bins that no arrival can be told apart in",
@@ -123,6 +126,29 @@ pub(super) fn cases() -> Vec<Case> {
             Ok(near(&steady_of(coarse(setup, method)?), &steady, 1.0, 1e-12))
         },
     ));
+    cases
+}
+
+/// Pulses from far below a bin's width to far above the window: the energy is kept.
+fn pulses() -> Vec<Case> {
+    let mut cases = Vec::new();
+    for width_s in [1e-30, 1e-24, 1e-16, 1e-9, 1e-6, 1e3] {
+        cases.push(Case::of_no_method(
+            format!("time/pulses-of-{width_s:e}-s"),
+            "a pulse far shorter or longer than a bin: cancellation that makes or loses energy",
+            move |setup| {
+                let mut finding = Finding::exact(true, "sums off by");
+                for pulse in [Pulse::Box { width_s }, Pulse::Gaussian { sigma_s: width_s }] {
+                    let mut image = image(setup, Method::Path, (LIT.0, 0.25, 40))?;
+                    let whole: f64 = image.parts().iter().sum();
+                    image.arrays.apply_pulse(pulse)?;
+                    let off = image.parts().iter().sum::<f64>() / whole - 1.0;
+                    finding = finding.and(Finding::exact(off.abs() < 1e-6, format!("{off:.1e}")));
+                }
+                Ok(finding)
+            },
+        ));
+    }
     cases
 }
 
