@@ -26,12 +26,13 @@ pub enum Estimator {
 
 impl Estimator {
     /// Names of all methods.
-    pub const NAMES: [&'static str; 2] = ["path", "beams"];
+    pub const NAMES: [&'static str; 3] = ["path", "light", "beams"];
 
     /// The method of a name with its default options.
     pub fn of_name(name: &str) -> Option<Self> {
         match name {
             "path" => Some(Self::Path(PathOptions::default())),
+            "light" => Some(Self::Light(LightOptions::default())),
             "beams" => Some(Self::Beams(BeamOptions::default())),
             _ => None,
         }

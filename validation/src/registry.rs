@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::experiment::{Effort, Experiment, Kind};
 use crate::experiments::{
     blur, calibration, echoes, energy, equal_time, even_spread, fresnel, glass, infinite_medium,
-    kernels, lens, mirrors, refraction, samplers, slab, sphere, spot, tables,
+    kernels, lens, mirrors, refraction, samplers, slab, sphere, spot, standard_error, tables,
 };
 use crate::matrix;
 use crate::sabotage::Twin;
@@ -41,6 +41,7 @@ fn sound(effort: Effort) -> Experiments {
         samplers::all(),
         kernels::all(),
         energy::all(),
+        standard_error::all(),
         fresnel::all(),
         echoes::all(effort),
         refraction::all(effort),

@@ -18,6 +18,7 @@
 //! | eta² missing | estimate over the factor (η_e/η_l)² of the crossings | linear; done where all light (or all light of a bin) makes the same crossings |
 //! | half a bin late | window half a bin *earlier* | an arrival at t + w/2 is in the bin \[e, e + w) exactly if t is in \[e − w/2, e + w/2) |
 //! | null boundary's segment left out of the OPL | window *later* by the segment's OPL | likewise, for experiments in which all light crosses that segment with one length (a null sphere around the lamp or the camera) |
+//! | light lost | estimate times 1 − x | it is the defect, wherever it is lost |
 //! | sampler's warp | a sample at the share u of its range moved to u^x | it is the defect |
 //!
 //! An experiment names its twins by [`Experiment::twins`]; the [`Context`] of a twin's run carries
@@ -54,6 +55,8 @@ pub enum Sabotage {
     Late(f64),
     /// A segment of this OPL \[m\] that ends at a null boundary is left out.
     NullSegment(f64),
+    /// This share of the light is lost on its way into the bins.
+    Loss(f64),
     /// The warp of a sampler has an additional power of this exponent.
     Warp(f64),
 }
@@ -67,11 +70,13 @@ impl Sabotage {
     pub const KERNEL: Self = Self::KernelNormalisation(1.02);
     /// Half a bin late.
     pub const LATE: Self = Self::Late(0.5);
+    /// 2 % of the light in bins is lost.
+    pub const LOSS: Self = Self::Loss(0.02);
     /// A sampler's warp with a power of 1.02 too many.
     pub const WARP: Self = Self::Warp(1.02);
 
     /// The labels of all kinds, by which names of twins begin.
-    pub const LABELS: [&'static str; 9] = [
+    pub const LABELS: [&'static str; 10] = [
         "sigma-s",
         "transmittance",
         "phase-normalisation",
@@ -80,6 +85,7 @@ impl Sabotage {
         "eta-squared",
         "late",
         "null-segment",
+        "loss",
         "warp",
     ];
 
@@ -94,7 +100,8 @@ impl Sabotage {
             Self::EtaSquared => 5,
             Self::Late(_) => 6,
             Self::NullSegment(_) => 7,
-            Self::Warp(_) => 8,
+            Self::Loss(_) => 8,
+            Self::Warp(_) => 9,
         };
         Self::LABELS[index]
     }
@@ -135,6 +142,7 @@ impl Sabotage {
         match self {
             Self::PhaseNormalisation => 4.0 * std::f64::consts::PI,
             Self::KernelNormalisation(factor) => factor,
+            Self::Loss(share) => 1.0 - share,
             _ => 1.0,
         }
     }

@@ -7,7 +7,7 @@ use std::path::Path;
 use glam::{DAffine3, DVec3};
 use tpb_optics::{Coefficients, Phase, Rgb};
 use tpb_scene::geometry::Sphere;
-use tpb_scene::load::{LoadedScene, load_scene};
+use tpb_scene::load::{LoadedScene, Override, load_scene};
 use tpb_scene::{
     Bsdf, EmitterKind, EmitterPart, FilmSpec, FovAxis, IntegratorSpec, Medium, MediumId,
     PixelFormat, Primitive, Reflector, Scene, SceneParts, Sensor, ShapePart, TimeSpec,
@@ -140,4 +140,15 @@ pub fn diffuse_sphere_parts(view: &View, albedo: f64) -> SceneParts {
 pub fn shipped(path: &Path) -> Result<LoadedScene> {
     load_scene(path, &[])
         .map_err(|error| ValidationError::unusable(path.display().to_string(), error))
+}
+
+/// A shipped scene with a film of this many pixels on a side.
+pub fn smaller(path: &Path, pixels: usize) -> Result<Scene> {
+    let unusable = |error| ValidationError::unusable(path.display().to_string(), error);
+    let overrides = [
+        Override::parse(&format!("sensor.film.width={pixels}")),
+        Override::parse(&format!("sensor.film.height={pixels}")),
+    ];
+    let overrides = overrides.into_iter().collect::<std::result::Result<Vec<_>, _>>();
+    Ok(load_scene(path, &overrides.map_err(unusable)?).map_err(unusable)?.scene)
 }

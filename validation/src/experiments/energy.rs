@@ -11,13 +11,14 @@ use tpb_film::{Layout, TimeAxis};
 use tpb_path::PathOptions;
 use tpb_render::{Budget, RunSettings};
 use tpb_scene::Plan;
-use tpb_scene::load::{Override, load_scene};
 
 use crate::cube::Cube;
-use crate::error::{Result, ValidationError};
-use crate::experiment::{Context, Experiment, Kind, Outcome};
+use crate::error::Result;
+use crate::experiment::{Context, Effort, Experiment, Kind, Outcome};
 use crate::measure::{Estimator, render};
 use crate::registry::Experiments;
+use crate::sabotage::Sabotage;
+use crate::scenes::smaller;
 
 const F64_TOLERANCE: f64 = 1e-11;
 const F32_TOLERANCE: f64 = 2e-6;
@@ -63,22 +64,20 @@ impl Experiment for SumOfBins {
         Kind::Exact
     }
 
+    fn twins(&self, _: Effort) -> Vec<Sabotage> {
+        vec![Sabotage::LOSS]
+    }
+
     fn run(&self, context: &Context) -> Result<Outcome> {
-        let path = context.scene_path("cornell-blocks");
-        let unusable = |error| ValidationError::unusable(path.display().to_string(), error);
-        let smaller = ["sensor.film.width=24", "sensor.film.height=24"]
-            .map(Override::parse)
-            .into_iter()
-            .collect::<std::result::Result<Vec<_>, _>>()
-            .map_err(unusable)?;
-        let scene = load_scene(&path, &smaller).map_err(unusable)?.scene;
+        let scene = smaller(&context.scene_path("cornell-blocks"), 24)?;
         let plan = Plan::new(&scene, &scene.integrator);
         let method = self.estimator().prepare::<1>(&scene, &plan, scene.integrator)?;
         let settings = RunSettings { seed: context.seed, budget: Budget::Passes(2), first_pass: 0 };
         let window = TimeAxis { start_opl: 4.5, bin_width_opl: 0.11, bins: 30 };
         let resolved = render(&*method, Layout::new(24, 24, Some(window))?, &settings)?.0;
         let steady = render(&*method, Layout::new(24, 24, None)?, &settings)?.0.steady;
-        let cube = Cube::of(&resolved);
+        let mut cube = Cube::of(&resolved);
+        cube.scale(context.estimate_factor());
         let relative = |a: f64, b: f64| if a == b { 0.0 } else { (a - b).abs() / b.abs() };
         let (mut of_f64, mut of_f32, mut outside) = (0.0_f64, 0.0_f64, 0.0);
         for (pixel, &expected) in steady.iter().enumerate() {

@@ -20,4 +20,5 @@ mod sights;
 pub mod slab;
 pub mod sphere;
 pub mod spot;
+pub mod standard_error;
 pub mod tables;

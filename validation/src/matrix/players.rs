@@ -70,8 +70,8 @@ pub enum Kernels {
     Alike,
     /// 1D in every medium, 2D and 3D in two of them.
     Plain,
-    /// Each in every medium; short beams and even spreading, which share all but their last step
-    /// with others, in two of them.
+    /// Each in every medium (3D not where scattering is peaked); short beams and even spreading,
+    /// which share all but their last step with others, in two of them (of 3D, in one).
     All,
 }
 
@@ -119,6 +119,12 @@ impl Player {
             Kernels::Plain => simple || several && !self.is_variant(),
             Kernels::All => several || !self.is_variant(),
         };
+        // A minute for each channel of an expected blur of spheres: variants of 3D play in one
+        // medium, and none where the phase function is peaked.
+        let in_turn = in_turn
+            && (self.blur() != Some(Blur::ThreeD)
+                || medium.name == "isotropic"
+                || !self.is_variant() && medium.name != "forward");
         case.admits(self.family) && in_turn
     }
 

@@ -154,17 +154,25 @@ impl Case for Fog {
                 Ok(())
             })
         };
-        Ok(Expected { fine: cube(4)?, coarse: cube(3)? })
+        // The expectation of a sphere's blur is a quadrature of quadratures.
+        let points = if matches!(blur, Some((Blur::ThreeD, _))) { 3 } else { 4 };
+        Ok(Expected { fine: cube(points)?, coarse: cube(points - 1)? })
     }
 
     fn budget(&self, player: &Player, medium: &MatrixMedium, effort: Effort) -> Budget {
         // Few photons are deflected much where the phase function is peaked.
+        // A pair costs the 3D kernel a quadrature, and rays that meet one beam are alike.
+        let (rays, spheres) = match player.blur() {
+            Some(Blur::ThreeD) => (1, true),
+            _ => (4, false),
+        };
         let passes = match (player.is_baseline(), medium.name) {
             (true, _) => effort.pick(1, 2),
+            (false, _) if spheres => 9,
             (false, "forward") => effort.pick(25, 35),
             (false, _) => effort.pick(10, 14),
         };
-        Budget { paths: 10_000, photons: 10_000, rays: 4, passes, radius: RADIUS }
+        Budget { paths: 10_000, photons: 10_000, rays, passes, radius: RADIUS }
     }
 
     /// From columns that look towards the lamp to those that look away.
