@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use crate::experiment::{Effort, Experiment, Kind};
 use crate::experiments::{
-    blur, calibration, echoes, energy, equal_time, even_spread, fresnel, glass, infinite_medium,
-    kernels, lens, mirrors, refraction, samplers, slab, sphere, spot, standard_error, tables,
+    blur, calibration, echoes, energy, equal_time, even_spread, fresnel, furnace, glass,
+    infinite_medium, kernels, lens, mirrors, refraction, samplers, slab, sphere, spot,
+    standard_error, tables,
 };
 use crate::matrix;
 use crate::sabotage::Twin;
@@ -52,6 +53,7 @@ fn sound(effort: Effort) -> Experiments {
         slab::all(effort),
         sphere::all(effort),
         spot::all(effort),
+        furnace::all(effort),
         matrix::all(effort),
         even_spread::all(),
         blur::all(effort),

@@ -7,6 +7,7 @@ pub mod energy;
 pub mod equal_time;
 pub mod even_spread;
 pub mod fresnel;
+pub mod furnace;
 pub mod glass;
 pub mod infinite_medium;
 pub mod kernels;

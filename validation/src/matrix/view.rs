@@ -1,6 +1,9 @@
 //! What the matrix' cameras see: a square image from the origin along +z, and its pixels in
 //! coordinates of the plane at distance 1.
 
+use std::num::NonZeroUsize;
+
+use gauss_quad::GaussLegendre;
 use glam::DVec3;
 use rayon::prelude::*;
 use tpb_reference::ReferenceError;
@@ -120,19 +123,11 @@ impl Frame {
     }
 }
 
-/// Gauss-Legendre nodes and weights on (0, 1): two, three, four points.
+/// Gauss-Legendre nodes and weights on (0, 1).
 pub fn gauss(points: usize) -> Vec<(f64, f64)> {
-    let half: &[(f64, f64)] = match points {
-        2 => &[(0.577_350_269_189_625_8, 1.0)],
-        3 => &[(0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)],
-        _ => &[
-            (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
-            (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
-        ],
-    };
-    let both =
-        half.iter().flat_map(|&(x, w)| if x == 0.0 { vec![(x, w)] } else { vec![(x, w), (-x, w)] });
-    both.map(|(x, w)| (0.5 + 0.5 * x, 0.5 * w)).collect()
+    let points = NonZeroUsize::new(points).expect("a rule has points");
+    let rule = GaussLegendre::new(points);
+    rule.as_node_weight_pairs().iter().map(|(x, w)| (0.5 + 0.5 * x, 0.5 * w)).collect()
 }
 
 /// What two rules, a fine and a coarse one, say of an expectation.

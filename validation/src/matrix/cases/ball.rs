@@ -142,12 +142,14 @@ impl Case for Ball {
                 Ok::<(), ReferenceError>(())
             })
         };
-        Ok(Expected { fine: cube(4)?, coarse: cube(3)? })
+        // The edges of the ball and of the front cross pixels.
+        Ok(Expected { fine: cube(12)?, coarse: cube(8)? })
     }
 
     fn budget(&self, player: &Player, medium: &MatrixMedium, effort: Effort) -> Budget {
         // Photons are connected with weights as unequal as the phase function.
         let passes = match (player.is_baseline(), medium.name) {
+            (true, "forward" | "backward") => effort.pick(1, 2),
             (true, _) => 1,
             (false, "backward" | "coloured") => effort.pick(8, 14),
             (false, _) => effort.pick(6, 8),

@@ -65,8 +65,9 @@ impl Case for Room {
         IntegratorSpec::default()
     }
 
+    /// Where scattering is peaked, paths from the camera are too noisy to compare with.
     fn takes(&self, medium: &MatrixMedium) -> bool {
-        medium.scatters()
+        medium.scatters() && medium.name != "forward"
     }
 
     fn admits(&self, _: Family) -> bool {
