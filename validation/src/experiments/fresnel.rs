@@ -171,7 +171,7 @@ impl FresnelChoice {
                 contrasts.push((contrast, value));
             }
         }
-        let plan = BatchPlan { batches: 64, passes: context.effort.pick(1, 4), seed: context.seed };
+        let plan = BatchPlan { batches: 64, passes: context.effort.pick(1, 2), seed: context.seed };
         let mut values = Vec::new();
         batches(&scene, &self.estimator(), context.layout(&scene.film)?, &plan, |cube: &Cube| {
             values.push(contrasts.iter().map(|(c, _)| c.value(cube)).collect());

@@ -142,7 +142,7 @@ impl SphereOrder {
         match self.who {
             Insider::Path if self.order == 1 => (16, 70.0, effort.pick(6, 12), 1),
             Insider::Path if self.filled => (16, 70.0, 6, 1),
-            Insider::Path => (16, 70.0, effort.pick(6, 12), effort.pick(1, 4)),
+            Insider::Path => (16, 70.0, effort.pick(6, 12), effort.pick(1, 2)),
             Insider::Beams | Insider::Light => (8, 80.0, 3, 2),
         }
     }

@@ -105,7 +105,7 @@ impl Player {
     }
 
     /// Whether it is a variant of another player.
-    fn is_variant(&self) -> bool {
+    pub(super) fn is_variant(&self) -> bool {
         let plain = |length, temporal| length == BeamLength::Long && temporal == Temporal::Exact;
         matches!(self.family, Family::Beams { length, temporal, .. } if !plain(length, temporal))
     }
