@@ -162,6 +162,13 @@ pub fn write_json(result: &SuiteResult, path: &Path) -> Result<()> {
     write(path, &(text + "\n"))
 }
 
+/// That results can be written into a folder, which is made if need be.
+pub fn probe(folder: &Path) -> Result<()> {
+    let probe = folder.join(".probe");
+    write(&probe, "")?;
+    fs::remove_file(&probe).map_err(|error| ValidationError::io(&probe, error))
+}
+
 /// Writes the results as `results.json` and as the page `report.md` into a folder.
 pub fn write_results(result: &SuiteResult, folder: &Path) -> Result<()> {
     write_json(result, &folder.join("results.json"))?;

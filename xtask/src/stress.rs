@@ -57,6 +57,8 @@ pub(crate) fn run(args: &StressArgs) -> Outcome {
     }
     let out = args.out.clone().unwrap_or_else(|| root().join("target/stress"));
     let setup = Setup { seed: args.seed, program: Some(program()?), folder: out.join("files") };
+    // Better now than after the run.
+    tpb_validation::suite::probe(&out)?;
     let width = report::width(&chosen);
     let result =
         run_cases(&chosen, &setup, args.threads, |record| say(&report::line(record, width)));

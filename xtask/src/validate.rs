@@ -91,6 +91,8 @@ pub(crate) fn run(args: &ValidateArgs) -> Outcome {
     if args.list {
         return Ok(true);
     }
+    // Better now than after the run.
+    suite::probe(&context.out)?;
     say("");
     let width = report::width(chosen.iter().map(|e| e.name()));
     let repeat = |name: &str| {

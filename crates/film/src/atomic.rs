@@ -7,7 +7,8 @@ use std::path::Path;
 use crate::FilmError;
 
 /// Writes a file beside its final name and renames it: whoever looks finds the old file or the new
-/// one, never a part. On an error nothing is left behind.
+/// one, never a part. On an error nothing is left behind. Links are followed; what is no regular
+/// file (a pipe, a device) is written to as it stands.
 ///
 /// # Errors
 /// [`FilmError::Io`] with the final path: no permission, no such folder, disk full, or whatever
@@ -19,6 +20,17 @@ pub fn atomic_write(
     let attempt = || -> io::Result<()> {
         if path.is_dir() {
             return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a directory"));
+        }
+        let target = match path.symlink_metadata() {
+            Ok(found) if found.is_symlink() => path.canonicalize()?,
+            _ => path.to_path_buf(),
+        };
+        let path = target.as_path();
+        if path.metadata().is_ok_and(|found| !found.is_file()) {
+            let file = File::options().write(true).open(path)?;
+            let mut buffer = BufWriter::new(&file);
+            write(&mut buffer)?;
+            return buffer.flush();
         }
         let folder = match path.parent() {
             Some(folder) if folder != Path::new("") => folder,
@@ -32,7 +44,8 @@ pub fn atomic_write(
             use std::os::unix::fs::PermissionsExt;
             builder.permissions(std::fs::Permissions::from_mode(0o666));
         }
-        let file = builder.tempfile_in(folder)?;
+        // The temporary file's name would be in the error.
+        let file = builder.tempfile_in(folder).map_err(|e| io::Error::from(e.kind()))?;
         let mut buffer = BufWriter::with_capacity(1 << 16, file.as_file());
         write(&mut buffer)?;
         buffer.flush()?;
@@ -60,6 +73,35 @@ mod tests {
         assert!(message.contains("result") && message.contains("no space left"), "{message}");
         assert_eq!(std::fs::read(&path).unwrap(), b"old");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    /// Regression: a pipe became a file, a link lost its target, `-o /dev/null` lost the device.
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_pipes_stay_pipes() {
+        use std::io::Read;
+        use std::os::unix::fs::{FileTypeExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let (target, link) = (folder.path().join("target"), folder.path().join("link"));
+        std::fs::write(&target, b"old").unwrap();
+        symlink(&target, &link).unwrap();
+        atomic_write(&link, |w| w.write_all(b"new")).unwrap();
+        assert_eq!(std::fs::read(&target).unwrap(), b"new");
+        assert!(link.symlink_metadata().unwrap().is_symlink());
+
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || {
+                let mut text = String::new();
+                File::open(pipe).unwrap().read_to_string(&mut text).unwrap();
+                text
+            }
+        });
+        atomic_write(&pipe, |w| w.write_all(b"through")).unwrap();
+        assert_eq!(reader.join().unwrap(), "through");
+        assert!(pipe.metadata().unwrap().file_type().is_fifo());
     }
 
     #[test]

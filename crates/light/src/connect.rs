@@ -76,13 +76,17 @@ impl<'a, const C: usize> Connections<'a, C> {
         };
         let opl = way.opl(seen.distance);
         let left = way.transmittance::<C>(scene, seen.distance);
+        let energy = intensity * left * seen.importance;
+        if energy.is_zero() {
+            return;
+        }
         let unwarp_opl = match (self.unwarp, source.on_surface) {
             (false, _) => 0.0,
             (true, true) => opl,
             (true, false) => self.first_surface(-seen.direction),
         };
         self.contributions.push(Contribution {
-            energy: intensity * left * seen.importance,
+            energy,
             opl: source.opl + opl - unwarp_opl,
             pixel: seen.pixel,
         });

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use tpb_beams::BeamOptions;
 use tpb_film::{Layout, TimeAxis};
+use tpb_light::LightOptions;
 use tpb_path::PathOptions;
 use tpb_render::{Budget, RunSettings};
 use tpb_scene::Plan;
@@ -19,6 +20,7 @@ use crate::measure::{Estimator, render};
 use crate::registry::Experiments;
 use crate::sabotage::Sabotage;
 use crate::scenes::smaller;
+use crate::statistics::worse;
 
 const F64_TOLERANCE: f64 = 1e-11;
 const F32_TOLERANCE: f64 = 2e-6;
@@ -28,19 +30,22 @@ const F32_TOLERANCE: f64 = 2e-6;
 pub enum SumOfBins {
     /// The path tracer.
     Path,
+    /// The light tracer.
+    Light,
     /// Photon beams.
     Beams,
 }
 
 /// Each method.
 pub fn all() -> Experiments {
-    vec![Arc::new(SumOfBins::Path), Arc::new(SumOfBins::Beams)]
+    vec![Arc::new(SumOfBins::Path), Arc::new(SumOfBins::Light), Arc::new(SumOfBins::Beams)]
 }
 
 impl SumOfBins {
     fn estimator(self) -> Estimator {
         match self {
             Self::Path => Estimator::Path(PathOptions { samples_per_pass: 16.try_into().ok() }),
+            Self::Light => Estimator::Light(LightOptions { photons_per_pass: Some(20_000) }),
             Self::Beams => Estimator::Beams(BeamOptions {
                 photons_per_pass: Some(20_000),
                 radius: Some(0.05),
@@ -82,8 +87,8 @@ impl Experiment for SumOfBins {
         let (mut of_f64, mut of_f32, mut outside) = (0.0_f64, 0.0_f64, 0.0);
         for (pixel, &expected) in steady.iter().enumerate() {
             let cells = cube.pixel(pixel);
-            of_f64 = of_f64.max(relative(resolved.steady[pixel], expected));
-            of_f32 = of_f32.max(relative(cells.iter().sum(), expected));
+            of_f64 = worse(of_f64, relative(resolved.steady[pixel], expected));
+            of_f32 = worse(of_f32, relative(cells.iter().sum(), expected));
             outside += cells[0] + cells[cells.len() - 1];
         }
         let share = outside / steady.iter().sum::<f64>();

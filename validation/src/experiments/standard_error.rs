@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use tpb_beams::BeamOptions;
 use tpb_film::{FilmOptions, Layout, TransientFilm};
+use tpb_light::LightOptions;
 use tpb_path::PathOptions;
 use tpb_render::{Budget, RunSettings, Stopwatch, run};
 use tpb_scene::Plan;
@@ -18,6 +19,7 @@ use crate::measure::{Estimator, render};
 use crate::registry::Experiments;
 use crate::sabotage::Sabotage;
 use crate::scenes::smaller;
+use crate::statistics::worse;
 
 /// Arrays are f32, and so is what the two sweeps read.
 const TOLERANCE: f64 = 1e-5;
@@ -27,7 +29,7 @@ const SIZE: usize = 16;
 /// One method.
 struct StandardError(Estimator);
 
-/// The path tracer, whose passes are alike, and beams, whose radius shrinks.
+/// Path and light tracing, whose passes are alike, and beams, whose radius shrinks.
 pub fn all() -> Experiments {
     let path = Estimator::Path(PathOptions { samples_per_pass: 4.try_into().ok() });
     let beams = Estimator::Beams(BeamOptions {
@@ -36,7 +38,8 @@ pub fn all() -> Experiments {
         surface_radius: Some(0.1),
         ..BeamOptions::default()
     });
-    vec![Arc::new(StandardError(path)), Arc::new(StandardError(beams))]
+    let light = Estimator::Light(LightOptions { photons_per_pass: Some(4000) });
+    [path, light, beams].map(|estimator| Arc::new(StandardError(estimator)) as _).to_vec()
 }
 
 impl Experiment for StandardError {
@@ -80,9 +83,11 @@ impl Experiment for StandardError {
             let mean = values().sum::<f64>() / n;
             let squares = values().map(|value| (value - mean) * (value - mean)).sum::<f64>();
             let expected = squares / (n * (n - 1.0));
-            if expected > 0.0 {
+            if expected == 0.0 {
+                worst = worse(worst, f64::from(variance));
+            } else {
                 let reported = f64::from(variance) * context.estimate_factor();
-                worst = worst.max((reported / expected - 1.0).abs());
+                worst = worse(worst, (reported / expected - 1.0).abs());
                 cells += 1;
             }
         }

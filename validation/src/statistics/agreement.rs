@@ -187,7 +187,7 @@ fn contrast(target: &Target, summary: Summary, critical: f64, freedom: f64) -> C
     let size = mean.abs().max(expected.abs()) / standard_error;
     let contributions = (size * size).is_finite().then_some(size * size);
     let p = match (excess, standard_error) {
-        (e, _) if e.is_nan() => 0.0,
+        _ if difference.is_nan() => 0.0,
         _ if contributions.is_some_and(|count| count < FEWEST_CONTRIBUTIONS) => 1.0,
         (0.0, _) => 1.0,
         (_, 0.0) => 0.0,

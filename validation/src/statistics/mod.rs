@@ -31,3 +31,19 @@ pub use chi_square::{ChiSquare, chi_square};
 pub use multiple::{holm, sidak};
 pub use ratio::{RatioInterval, ratio_of_means};
 pub use split::{Gram, ReferenceNoise, Split};
+
+/// The larger of two errors; a NaN is worse than any.
+pub fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::INFINITY } else { a.max(b) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_worse_than_a_nan() {
+        assert_eq!(worse(1.0, 2.0), 2.0);
+        assert_eq!([0.1, f64::NAN, 0.2].into_iter().fold(0.0, worse), f64::INFINITY);
+    }
+}

@@ -197,9 +197,9 @@ mod tests {
         let channel = Channel { sigma_s: 0.4, sigma_t: 0.5, g: 0.5 };
         let frame = Ball.frame();
         let expected = Ball.expected(&channel, None).unwrap().fine;
-        let mean: f64 = gauss(4)
+        let mean: f64 = gauss(12)
             .iter()
-            .flat_map(|(u, wu)| gauss(4).into_iter().map(move |(v, wv)| (*u, v, wu * wv)))
+            .flat_map(|(u, wu)| gauss(12).into_iter().map(move |(v, wv)| (*u, v, wu * wv)))
             .map(|(u, v, weight)| {
                 let ray = frame.point(5, u, v).direction();
                 let (s0, s1) = chord(DVec3::ZERO, ray);
