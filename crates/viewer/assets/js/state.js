@@ -1,0 +1,75 @@
+// What is shown, in one object; whoever changes it calls `update`, whoever draws it listens.
+
+const state = {
+  method: 0,
+  view: "frame",
+  bin: 0,
+  x: 0,
+  y: 0,
+  hover: null, // a cell of the view under the mouse: {x, y}
+  exposure: 0, // stops
+  follow: false,
+  curve: "linear",
+  metric: "signed",
+  channel: "luminance",
+  chartKind: "pixel",
+  logAxis: false,
+  chartZoom: false, // near the slider's time
+  playing: false,
+  speed: 20, // bins per second
+  zooms: {}, // per kind of view: {scale, x, y}
+};
+
+const listeners = [];
+let changed = new Set();
+let scheduled = null;
+
+/** Changes the state; listeners are called once, before the next picture. */
+function update(changes) {
+  for (const [name, value] of Object.entries(changes)) {
+    if (state[name] !== value) {
+      state[name] = value;
+      changed.add(name);
+    }
+  }
+  if (changed.size > 0 && scheduled === null) {
+    scheduled = new Promise((resolve) => requestAnimationFrame(() => {
+      const names = changed;
+      changed = new Set();
+      scheduled = null;
+      for (const listener of listeners) listener(names);
+      resolve();
+    }));
+  }
+}
+
+/** Calls `listener` when any of the named parts of the state has changed. */
+function onChange(names, listener) {
+  listeners.push((changes) => {
+    if (names.some((name) => changes.has(name))) listener(changes);
+  });
+}
+
+/** Resolves when everything is drawn. */
+async function settled() {
+  while (scheduled !== null) await scheduled;
+}
+
+/** Reads a link such as `#method=beams&view=error&bin=40&pixel=12,30&exposure=1`. */
+function readLink(viewer) {
+  const link = new URLSearchParams(location.hash.slice(1));
+  const changes = {};
+  const whole = (text, end) => Math.min(Math.max(0, Math.round(Number(text)) || 0), end - 1);
+  const method = viewer.cubes.findIndex((cube) => cube.entry.key === link.get("method"));
+  if (method >= 0) changes.method = method;
+  if (viewer.views.some((view) => view.name === link.get("view"))) changes.view = link.get("view");
+  if (link.has("bin") && viewer.bins > 0) changes.bin = whole(link.get("bin"), viewer.bins);
+  const pixel = (link.get("pixel") ?? "").split(",");
+  if (pixel.length === 2) {
+    changes.x = whole(pixel[0], viewer.width);
+    changes.y = whole(pixel[1], viewer.height);
+  }
+  if (link.has("exposure")) changes.exposure = Number(link.get("exposure")) || 0;
+  if (["dark", "light"].includes(link.get("theme"))) document.documentElement.dataset.theme = link.get("theme");
+  update(changes);
+}

@@ -1,0 +1,132 @@
+//! Cubes of other programs, with what they lack made up.
+
+use std::path::Path;
+
+use tpb_film::{Arrays, Quantity};
+use tpb_optics::opl::opl_from_seconds;
+
+use super::Loaded;
+use super::npy::{self, Array};
+use crate::ViewerError;
+
+/// What a cube's file must hold.
+const WANTED: &str = "a cube is (rows, columns, bins) or (rows, columns, bins, channels)";
+
+/// The cube of a `.npy` file.
+pub(super) fn of_npy(path: &Path) -> Result<Loaded, ViewerError> {
+    let arrays = arrays(path, "the array", npy::of_file(path)?)?;
+    Ok(Loaded::new(path, arrays, false))
+}
+
+/// The cube of an archive with these arrays.
+pub(super) fn of_npz(path: &Path, names: &[String]) -> Result<Loaded, ViewerError> {
+    let name = choose(path, names)?;
+    let mut arrays = arrays(path, &format!("`{name}`"), npy::of_member(path, name)?)?;
+    if name == "radiance" {
+        arrays.quantity = Quantity::RadianceAtUpperEdges;
+    }
+    let edges = edges(path, names, arrays.bins)?;
+    let timed = edges.is_some();
+    if let Some(edges) = edges {
+        arrays.opl_edges = edges;
+    }
+    if names.iter().any(|name| name == "variance") {
+        let variance = npy::of_member(path, "variance")?;
+        let values = variance.into_f32();
+        if values.len() != arrays.transient.len() {
+            return Err(ViewerError::cube(path, "`variance` has not the shape of the cube"));
+        }
+        if values.iter().any(|&v| v.is_nan() || v < 0.0) {
+            return Err(ViewerError::cube(path, "`variance` has values that are no variances"));
+        }
+        arrays.variance = Some(values);
+    }
+    Ok(Loaded::new(path, arrays, timed))
+}
+
+/// Which array is the cube.
+fn choose<'a>(path: &Path, names: &'a [String]) -> Result<&'a str, ViewerError> {
+    if let Some(known) = names.iter().find(|name| *name == "transient" || *name == "radiance") {
+        return Ok(known);
+    }
+    let mut cubes = Vec::new();
+    for name in names {
+        if matches!(npy::dimensions(path, name)?, Some(3 | 4)) {
+            cubes.push(name.as_str());
+        }
+    }
+    match cubes[..] {
+        [only] => Ok(only),
+        [] => Err(ViewerError::cube(
+            path,
+            format!("has no cube among its arrays ({}); {WANTED}", names.join(", ")),
+        )),
+        _ => Err(ViewerError::cube(
+            path,
+            format!("has several cubes ({}); name the one meant `transient`", cubes.join(", ")),
+        )),
+    }
+}
+
+/// The edges of the bins as OPL, if the archive has them.
+fn edges(path: &Path, names: &[String], bins: usize) -> Result<Option<Vec<f64>>, ViewerError> {
+    let has = |name: &str| names.iter().any(|n| n == name);
+    for name in ["opl_edges", "time_edges"] {
+        if !has(name) {
+            continue;
+        }
+        let mut edges = npy::of_member(path, name)?.into_f64();
+        if name == "time_edges" {
+            for edge in &mut edges {
+                *edge = opl_from_seconds(*edge);
+            }
+        }
+        let rising = edges.windows(2).all(|pair| pair[0] < pair[1]);
+        if edges.len() != bins + 1 || !rising || edges.iter().any(|edge| !edge.is_finite()) {
+            let reason = format!("`{name}` is not a rising list of the {} edges of bins", bins + 1);
+            return Err(ViewerError::cube(path, reason));
+        }
+        return Ok(Some(edges));
+    }
+    Ok(None)
+}
+
+/// A cube alone: nothing outside the window, times count bins.
+fn arrays(path: &Path, name: &str, array: Array) -> Result<Arrays, ViewerError> {
+    let [height, width, bins, channels] = match array.shape[..] {
+        [height, width, bins] => [height, width, bins, 1],
+        [height, width, bins, channels] => [height, width, bins, channels],
+        _ => {
+            let reason = format!("{name} has the shape {:?}; {WANTED}", array.shape);
+            return Err(ViewerError::cube(path, reason));
+        }
+    };
+    if height * width * bins == 0 || !matches!(channels, 1 | 3) {
+        let reason = format!(
+            "{name} has the shape {:?}: at least one pixel and bin and 1 or 3 channels are needed",
+            array.shape
+        );
+        return Err(ViewerError::cube(path, reason));
+    }
+    let transient = array.into_f32();
+    let outside = vec![0.0; height * width * channels];
+    let mut steady = outside.clone();
+    for (pixel, cells) in transient.chunks_exact(bins * channels).enumerate() {
+        for (at, &cell) in cells.iter().enumerate() {
+            steady[pixel * channels + at % channels] += f64::from(cell);
+        }
+    }
+    Ok(Arrays {
+        width,
+        height,
+        bins,
+        channels,
+        quantity: Quantity::BinEnergy,
+        opl_edges: (0..=bins).map(|edge| edge as f64).collect(),
+        transient,
+        variance: None,
+        before: outside.clone(),
+        after: outside,
+        steady,
+    })
+}

@@ -1,0 +1,163 @@
+//! Files of ours and of other programs, whole and broken.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use tpb_film::archive::{ArchiveWriter, Compression};
+
+use super::*;
+use crate::testing::{cube, with_error};
+
+/// A `.npy` file, byte by byte: format version 1.0.
+fn npy(kind: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
+    let order = if fortran { "True" } else { "False" };
+    let mut header = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': {shape}, }}");
+    while (header.len() + 11) % 64 != 0 {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend(u16::try_from(header.len()).unwrap().to_le_bytes());
+    bytes.extend(header.bytes());
+    bytes.extend(data);
+    bytes
+}
+
+fn write(folder: &Path, name: &str, bytes: &[u8]) -> PathBuf {
+    let path = folder.join(name);
+    fs::File::create(&path).unwrap().write_all(bytes).unwrap();
+    path
+}
+
+fn error(path: &Path) -> String {
+    load(path).unwrap_err().to_string()
+}
+
+#[test]
+fn any_byte_order_size_and_memory_order_gives_the_same_cube() {
+    let folder = tempfile::tempdir().unwrap();
+    // (2, 3, 4, 1) with cell = its index in C order.
+    let values: Vec<f64> = (0..24).map(f64::from).collect();
+    let mut fortran = Vec::new();
+    for t in 0..4 {
+        for x in 0..3 {
+            for y in 0..2 {
+                fortran.push(values[(y * 3 + x) * 4 + t]);
+            }
+        }
+    }
+    let single =
+        |v: &[f64]| -> Vec<u8> { v.iter().flat_map(|&v| (v as f32).to_le_bytes()).collect() };
+    let big = |v: &[f64]| -> Vec<u8> { v.iter().flat_map(|v| v.to_be_bytes()).collect() };
+    let files = [
+        npy("<f4", false, "(2, 3, 4)", &single(&values)),
+        npy("<f4", false, "(2, 3, 4, 1)", &single(&values)),
+        npy(">f8", false, "(2, 3, 4)", &big(&values)),
+        npy("<f4", true, "(2, 3, 4)", &single(&fortran)),
+        npy(">f8", true, "(2, 3, 4, 1)", &big(&fortran)),
+    ];
+    for (index, bytes) in files.iter().enumerate() {
+        let loaded = load(&write(folder.path(), &format!("{index}.npy"), bytes)).unwrap();
+        let arrays = &loaded.arrays;
+        assert_eq!((arrays.height, arrays.width, arrays.bins, arrays.channels), (2, 3, 4, 1));
+        let found: Vec<f64> = arrays.transient.iter().map(|&v| f64::from(v)).collect();
+        assert_eq!(found, values, "file {index}");
+        assert_eq!(arrays.steady[1], 4.0 + 5.0 + 6.0 + 7.0);
+        assert!(!loaded.timed && loaded.is_sound() && loaded.remarks.is_empty());
+    }
+}
+
+#[test]
+fn broken_files_are_errors_that_name_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, bytes: &[u8]| error(&write(folder.path(), name, bytes));
+    let message = file("int.npy", &npy("<i4", false, "(2, 2, 2)", &[0; 32]));
+    assert!(message.contains("int.npy") && message.contains("float32"), "{message}");
+    assert!(file("short.npy", &npy("<f4", false, "(2, 2, 2)", &[0; 31])).contains("shorter"));
+    let huge = "(4294967295, 4294967295, 4294967295)";
+    assert!(file("huge.npy", &npy("<f4", false, huge, &[0; 32])).contains("shorter"));
+    assert!(file("long.npy", &npy("<f4", false, "(1, 1, 2)", &[0; 12])).contains("longer"));
+    assert!(file("flat.npy", &npy("<f4", false, "(2, 2)", &[0; 16])).contains("[2, 2]"));
+    let four = npy("<f4", false, "(1, 1, 2, 4)", &[0; 32]);
+    assert!(file("four.npy", &four).contains("1 or 3 channels"));
+    assert!(file("empty.npy", &npy("<f4", false, "(0, 1, 2)", &[])).contains("at least one"));
+    let whole = npy("<f4", false, "(1, 1, 2)", &[0; 8]);
+    assert!(file("cut.npy", &whole[..40]).contains("cut.npy"));
+    assert!(file("text.npy", b"no array").contains("neither"));
+    assert!(file("cut.npz", b"PK\x03\x04 and nothing").contains("cut.npz"));
+    assert!(error(&folder.path().join("nowhere.npy")).contains("nowhere.npy"));
+    assert!(error(folder.path()).contains("transient.npz"));
+}
+
+#[test]
+fn odd_cells_are_kept_and_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let values = [1.0, -2.0, f32::NAN, f32::INFINITY];
+    let data: Vec<u8> = values.iter().flat_map(|v: &f32| v.to_le_bytes()).collect();
+    let path = write(folder.path(), "odd.npy", &npy("<f4", false, "(1, 1, 4)", &data));
+    let loaded = load(&path).unwrap();
+    let remarks = loaded.remarks.join("\n");
+    assert!(
+        remarks.contains("2 of 4 cells are not finite") && remarks.contains("1 of 4"),
+        "{remarks}"
+    );
+    assert!(!loaded.is_sound());
+    assert_eq!(loaded.arrays.transient[1], -2.0);
+}
+
+fn archive(path: &Path, members: &[(&str, &[usize], &[f64])]) {
+    let mut writer = ArchiveWriter::new(fs::File::create(path).unwrap(), Compression::Deflated);
+    for (name, shape, values) in members {
+        writer.put(name, shape, values).unwrap();
+    }
+    writer.finish().unwrap();
+}
+
+#[test]
+fn archives_of_ours_and_of_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let ours = with_error(cube(3, 2, 4, 3), 0.1);
+    ours.write_npz(&folder.path().join("transient.npz")).unwrap();
+    let loaded = load(folder.path()).unwrap();
+    assert!(loaded.timed && loaded.arrays == ours);
+
+    let path = folder.path().join("other.npz");
+    let cells = [0.0, 1.0, 2.0, 3.0];
+    let edges: Vec<f64> = (0..5).map(|i| f64::from(i) * 1e-9).collect();
+    archive(&path, &[("data", &[1, 1, 4], &cells), ("time_edges", &[5], &edges)]);
+    let other = load(&path).unwrap();
+    assert!(other.timed && other.arrays.steady == [6.0]);
+    assert!((other.arrays.opl_edges[4] - 4.0 * 0.299_792_458).abs() < 1e-12);
+
+    archive(&path, &[("a", &[1, 1, 4], &cells), ("b", &[1, 1, 4], &cells)]);
+    assert!(error(&path).contains("several cubes (a, b)"));
+    archive(&path, &[("a", &[4], &cells)]);
+    assert!(error(&path).contains("no cube among its arrays (a)"));
+    archive(&path, &[("a", &[1, 1, 4], &cells), ("time_edges", &[4], &cells)]);
+    assert!(error(&path).contains("5 edges"));
+    archive(&path, &[("transient", &[1, 1, 4], &cells), ("variance", &[1, 1, 2], &cells[..2])]);
+    assert!(error(&path).contains("variance"));
+}
+
+#[test]
+fn cubes_without_a_time_axis_take_that_of_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ours.npz");
+    cube(2, 1, 3, 1).write_npz(&path).unwrap();
+    let bare = write(folder.path(), "bare.npy", &npy("<f4", false, "(1, 2, 3)", &[0; 24]));
+    let mut both = [load(&bare).unwrap(), load(&path).unwrap()];
+    assert!(bring_together(&mut both.each_mut()).unwrap());
+    assert_eq!(both[0].arrays.opl_edges, both[1].arrays.opl_edges);
+    assert!(both[0].remarks[0].contains("ours.npz"));
+    let mut alone = [load(&bare).unwrap(), load(&bare).unwrap()];
+    assert!(!bring_together(&mut alone.each_mut()).unwrap());
+    assert_eq!(alone[0].arrays.opl_edges, [0.0, 1.0, 2.0, 3.0]);
+
+    let wide = write(folder.path(), "wide.npy", &npy("<f4", false, "(1, 1, 6)", &[0; 24]));
+    let mut wrong = [load(&wide).unwrap(), load(&path).unwrap()];
+    let message = bring_together(&mut wrong.each_mut()).unwrap_err().to_string();
+    for part in ["wide.npy has (1, 1, 6, 1)", "ours.npz has (1, 2, 3, 1)"] {
+        assert!(message.contains(part), "{part} is missing in {message}");
+    }
+}

@@ -1,0 +1,196 @@
+//! What the page's scripts are told, as JSON; the arrays are in streams beside it.
+
+use serde::Serialize;
+use tpb_film::{Arrays, Quantity};
+
+use crate::comparison::{Comparison, Method};
+use crate::metrics::{EPSILON, FrameCurves, INTERVAL, Metrics};
+use crate::pack::{PackedMethod, Prediction, Stream, code};
+use crate::reduce::Factors;
+
+/// All but the arrays.
+#[derive(Serialize)]
+pub(crate) struct Manifest<'a> {
+    title: &'a str,
+    caption: &'a str,
+    program: &'static str,
+    quantity: Quantity,
+    /// Whether edges are metres of OPL.
+    timed: bool,
+    /// Shape of the packed arrays.
+    shape: Shape,
+    /// Shape of the results.
+    rendered: Shape,
+    factors: [usize; 2],
+    edges: &'a [f64],
+    /// Edges of the results' bins, for `frames`.
+    rendered_edges: &'a [f64],
+    code: Code,
+    epsilon: f64,
+    interval: f64,
+    judged_label: Option<&'a str>,
+    notes: &'a [String],
+    methods: Vec<MethodEntry<'a>>,
+}
+
+#[derive(Serialize)]
+struct Shape {
+    width: usize,
+    height: usize,
+    bins: usize,
+    channels: usize,
+}
+
+impl Shape {
+    fn of(arrays: &Arrays) -> Self {
+        let Arrays { width, height, bins, channels, .. } = *arrays;
+        Self { width, height, bins, channels }
+    }
+}
+
+/// How codes are read: `tpb_viewer::pack::code`.
+#[derive(Serialize)]
+struct Code {
+    steps: f64,
+    image_steps: f64,
+    offset: f64,
+    error_steps: f64,
+    error_offset: f64,
+}
+
+#[derive(Serialize)]
+struct MethodEntry<'a> {
+    key: &'a str,
+    label: &'a str,
+    reference: bool,
+    caption: &'a str,
+    command: Option<&'a str>,
+    provenance: &'a [(String, String)],
+    cube: Vec<StreamEntry>,
+    errors: Vec<StreamEntry>,
+    before: Vec<StreamEntry>,
+    after: Vec<StreamEntry>,
+    steady: Vec<StreamEntry>,
+    numbers: Option<&'a Numbers>,
+    frames: &'a FrameCurves,
+}
+
+/// Where a stream is, and how it is undone.
+#[derive(Serialize)]
+struct StreamEntry {
+    id: String,
+    #[serde(flatten)]
+    prediction: Prediction,
+}
+
+/// Error numbers of a method.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Numbers {
+    cube: Option<Metrics>,
+    steady: Metrics,
+    judged_cube: Option<Metrics>,
+    judged_steady: Option<Metrics>,
+}
+
+/// What is computed from the results at their full size, once.
+pub(crate) struct Judgement {
+    pub(crate) numbers: Option<Numbers>,
+    pub(crate) frames: FrameCurves,
+}
+
+impl Judgement {
+    pub(crate) fn new(comparison: &Comparison<'_>, method: &Method<'_>) -> Self {
+        let reference = comparison.reference().map(|reference| reference.arrays);
+        let judged = comparison.judged.as_deref();
+        let x = method.arrays;
+        let numbers = reference.filter(|_| !method.is_reference).map(|r| Numbers {
+            cube: (x.bins > 0).then(|| Metrics::of_cube(x, r, None)),
+            steady: Metrics::of_steady(x, r, None),
+            judged_cube: judged
+                .filter(|_| x.bins > 0)
+                .map(|judged| Metrics::of_cube(x, r, Some(judged))),
+            judged_steady: judged.map(|judged| Metrics::of_steady(x, r, Some(judged))),
+        });
+        let frames = FrameCurves::new(x, reference.filter(|_| !method.is_reference));
+        Self { numbers, frames }
+    }
+}
+
+/// Streams with their names.
+#[derive(Default)]
+pub(crate) struct Streams<'a>(Vec<&'a Stream>);
+
+impl<'a> Streams<'a> {
+    fn enter(&mut self, streams: &'a [Stream]) -> Vec<StreamEntry> {
+        let enter = |stream: &'a Stream| {
+            self.0.push(stream);
+            StreamEntry { id: name(self.0.len() - 1), prediction: stream.prediction }
+        };
+        streams.iter().map(enter).collect()
+    }
+
+    /// Names and streams.
+    pub(crate) fn named(&self) -> impl Iterator<Item = (String, &'a Stream)> {
+        self.0.iter().enumerate().map(|(index, stream)| (name(index), *stream))
+    }
+}
+
+fn name(index: usize) -> String {
+    format!("data-{index}")
+}
+
+/// The manifest of packed results and the streams that it names. `first` is the first result,
+/// reduced.
+pub(crate) fn manifest<'a>(
+    comparison: &'a Comparison<'_>,
+    factors: Factors,
+    first: &'a Arrays,
+    packed: &'a [PackedMethod],
+    judgements: &'a [Judgement],
+) -> (Manifest<'a>, Streams<'a>) {
+    let mut streams = Streams::default();
+    let methods = comparison.methods.iter().zip(packed).zip(judgements);
+    let methods = methods
+        .map(|((method, packed), judgement)| MethodEntry {
+            key: &method.key,
+            label: &method.label,
+            reference: method.is_reference,
+            caption: &method.caption,
+            command: method.command.as_deref(),
+            provenance: &method.provenance,
+            cube: streams.enter(&packed.cube),
+            errors: streams.enter(&packed.errors),
+            before: streams.enter(&packed.before),
+            after: streams.enter(&packed.after),
+            steady: streams.enter(&packed.steady),
+            numbers: judgement.numbers.as_ref(),
+            frames: &judgement.frames,
+        })
+        .collect();
+    let rendered = comparison.first();
+    let manifest = Manifest {
+        title: &comparison.title,
+        caption: &comparison.caption,
+        program: concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")),
+        quantity: rendered.quantity,
+        timed: comparison.timed,
+        shape: Shape::of(first),
+        rendered: Shape::of(rendered),
+        factors: [factors.pixels, factors.bins],
+        edges: &first.opl_edges,
+        rendered_edges: &rendered.opl_edges,
+        code: Code {
+            steps: code::STEPS,
+            image_steps: code::IMAGE_STEPS,
+            offset: code::OFFSET,
+            error_steps: code::ERROR_STEPS,
+            error_offset: code::ERROR_OFFSET,
+        },
+        epsilon: EPSILON,
+        interval: INTERVAL,
+        judged_label: comparison.judged.as_ref().map(|_| comparison.judged_label.as_str()),
+        notes: &comparison.notes,
+        methods,
+    };
+    (manifest, streams)
+}

@@ -1,0 +1,250 @@
+//! Smaller arrays: box means over pixels, sums over bins, by whole factors.
+//!
+//! A reduced pixel is the mean of a block of pixels, a reduced bin the sum of a group of bins; at
+//! the right, lower and last ends blocks and groups may be smaller, and means are over what is
+//! there. Hence a reduced cell is what a film with larger pixels and bins would hold, and bins +
+//! before + after = steady stays true. Radiance at upper edges is that of a group's last edge.
+//!
+//! Variance: the covariances of cells are unknown. `sd(Σ a_i X_i) ≤ Σ |a_i| sd(X_i)` always, so the
+//! reduced standard error is an upper bound: exact where cells move together, too wide by the
+//! square root of their number where they are independent.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+use tpb_film::{Arrays, Quantity};
+
+/// By how much arrays are reduced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Factors {
+    /// Side of a block of pixels.
+    pub pixels: usize,
+    /// Bins in a group.
+    pub bins: usize,
+}
+
+impl Factors {
+    /// Nothing is reduced.
+    pub const NONE: Self = Self { pixels: 1, bins: 1 };
+
+    /// Cells that become one.
+    pub(crate) fn cells(self) -> usize {
+        self.pixels * self.pixels * self.bins
+    }
+
+    /// All that make sense for a shape, the gentlest first: no axis is reduced by more than is
+    /// needed.
+    pub(crate) fn all(arrays: &Arrays) -> Vec<Self> {
+        let longest = arrays.width.max(arrays.height);
+        let mut all: Vec<Self> = (1..=longest)
+            .flat_map(|pixels| (1..=arrays.bins.max(1)).map(move |bins| Self { pixels, bins }))
+            .filter(|f| arrays.bins < 2 || f.pixels.max(f.bins) <= 4 * f.pixels.min(f.bins))
+            .collect();
+        all.push(Self { pixels: longest, bins: arrays.bins.max(1) });
+        all.sort_by_key(|f| (f.pixels.max(f.bins), f.cells()));
+        all
+    }
+}
+
+/// Reduces arrays; a factor of 0 counts as 1.
+pub fn reduce(arrays: &Arrays, factors: Factors) -> Arrays {
+    let rows: Vec<usize> = (0..arrays.height.div_ceil(factors.pixels.max(1))).collect();
+    reduce_rows(arrays, factors, &rows)
+}
+
+/// Some rows of the reduced arrays.
+pub(crate) fn reduce_rows(arrays: &Arrays, factors: Factors, rows: &[usize]) -> Arrays {
+    let factors = Factors { pixels: factors.pixels.max(1), bins: factors.bins.max(1) };
+    let blocks = Blocks { arrays, factors };
+    let edges = &arrays.opl_edges;
+    let bins = arrays.bins.div_ceil(factors.bins);
+    let last = edges.len().saturating_sub(1);
+    Arrays {
+        width: blocks.width(),
+        height: rows.len(),
+        bins,
+        channels: arrays.channels,
+        quantity: arrays.quantity,
+        opl_edges: (0..=last)
+            .step_by(factors.bins)
+            .chain((!last.is_multiple_of(factors.bins)).then_some(last))
+            .filter_map(|edge| edges.get(edge).copied())
+            .collect(),
+        transient: blocks.cube(rows, &arrays.transient, f64::from, |mean| mean as f32),
+        variance: arrays.variance.as_ref().map(|variance| {
+            blocks.cube(
+                rows,
+                variance,
+                |v| f64::from(v).sqrt(),
+                |deviation| (deviation * deviation) as f32,
+            )
+        }),
+        before: blocks.image(rows, &arrays.before),
+        after: blocks.image(rows, &arrays.after),
+        steady: blocks.image(rows, &arrays.steady),
+    }
+}
+
+/// Pixels in blocks, bins in groups.
+struct Blocks<'a> {
+    arrays: &'a Arrays,
+    factors: Factors,
+}
+
+impl Blocks<'_> {
+    fn width(&self) -> usize {
+        self.arrays.width.div_ceil(self.factors.pixels)
+    }
+
+    /// The pixels of a block.
+    fn pixels(&self, row: usize, column: usize) -> impl Iterator<Item = usize> + use<'_> {
+        let side = self.factors.pixels;
+        let within =
+            |at: usize, end: usize| -> Range<usize> { at * side..((at + 1) * side).min(end) };
+        let columns = within(column, self.arrays.width);
+        within(row, self.arrays.height)
+            .flat_map(move |y| columns.clone().map(move |x| y * self.arrays.width + x))
+    }
+
+    /// Means over blocks of sums over groups of `read` cells, each `write`n.
+    fn cube(
+        &self,
+        rows: &[usize],
+        cells: &[f32],
+        read: impl Fn(f32) -> f64 + Sync,
+        write: impl Fn(f64) -> f32 + Sync,
+    ) -> Vec<f32> {
+        let Arrays { bins, channels, quantity, .. } = *self.arrays;
+        if self.factors == Factors::NONE && rows.len() == self.arrays.height {
+            return cells.to_vec();
+        }
+        let size = bins.div_ceil(self.factors.bins) * channels;
+        let mut out = vec![0.0; rows.len() * self.width() * size];
+        if size == 0 {
+            return out;
+        }
+        let last_only = quantity == Quantity::RadianceAtUpperEdges;
+        let counts = |bin: usize| {
+            !last_only || (bin + 1).is_multiple_of(self.factors.bins) || bin + 1 == bins
+        };
+        out.par_chunks_exact_mut(size).enumerate().for_each(|(at, out)| {
+            let mut sums = vec![0.0; size];
+            let mut pixels = 0.0;
+            for pixel in self.pixels(rows[at / self.width()], at % self.width()) {
+                pixels += 1.0;
+                let cells = &cells[pixel * bins * channels..(pixel + 1) * bins * channels];
+                for (bin, cell) in cells.chunks_exact(channels).enumerate() {
+                    if counts(bin) {
+                        let first = bin / self.factors.bins * channels;
+                        for (sum, &value) in sums[first..].iter_mut().zip(cell) {
+                            *sum += read(value);
+                        }
+                    }
+                }
+            }
+            for (out, sum) in out.iter_mut().zip(sums) {
+                *out = write(sum / pixels);
+            }
+        });
+        out
+    }
+
+    fn image(&self, rows: &[usize], image: &[f64]) -> Vec<f64> {
+        let channels = self.arrays.channels;
+        if image.is_empty() {
+            return Vec::new();
+        }
+        let mut out = Vec::with_capacity(rows.len() * self.width() * channels);
+        for &row in rows {
+            for column in 0..self.width() {
+                for channel in 0..channels {
+                    let values = self.pixels(row, column).map(|p| image[p * channels + channel]);
+                    let (sum, count) = values.fold((0.0, 0.0), |(s, n), v| (s + v, n + 1.0));
+                    out.push(sum / count);
+                }
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{cube, with_error};
+
+    /// The reduced cell by its definition.
+    fn expected(arrays: &Arrays, f: Factors, y: usize, x: usize, t: usize, c: usize) -> f64 {
+        let (mut sum, mut pixels) = (0.0, 0.0);
+        for row in (y * f.pixels..(y + 1) * f.pixels).filter(|&row| row < arrays.height) {
+            for column in (x * f.pixels..(x + 1) * f.pixels).filter(|&x| x < arrays.width) {
+                pixels += 1.0;
+                for bin in (t * f.bins..(t + 1) * f.bins).filter(|&bin| bin < arrays.bins) {
+                    let pixel = arrays.pixel(row * arrays.width + column);
+                    sum += f64::from(pixel[bin * arrays.channels + c]);
+                }
+            }
+        }
+        sum / pixels
+    }
+
+    #[test]
+    fn cells_are_means_of_sums_also_at_the_ends() {
+        let arrays = cube(7, 5, 11, 3);
+        for factors in [(2, 3), (3, 1), (1, 4), (7, 11), (1, 1)] {
+            let factors = Factors { pixels: factors.0, bins: factors.1 };
+            let small = reduce(&arrays, factors);
+            assert_eq!(small.width, 7_usize.div_ceil(factors.pixels));
+            assert_eq!(small.opl_edges.len(), small.bins + 1);
+            assert_eq!(small.opl_edges.first(), arrays.opl_edges.first());
+            assert_eq!(small.opl_edges.last(), arrays.opl_edges.last());
+            for y in 0..small.height {
+                for x in 0..small.width {
+                    for at in 0..small.bins * 3 {
+                        let found = f64::from(small.pixel(y * small.width + x)[at]);
+                        let exact = expected(&arrays, factors, y, x, at / 3, at % 3);
+                        assert!((found - exact).abs() <= 1e-7 * exact, "{factors:?} {y} {x} {at}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bins_still_add_up_to_the_steady_image() {
+        let arrays = cube(9, 6, 20, 1);
+        let small = reduce(&arrays, Factors { pixels: 4, bins: 3 });
+        for pixel in 0..small.pixels() {
+            let inside: f64 = small.pixel(pixel).iter().map(|&cell| f64::from(cell)).sum();
+            let sum = inside + small.before[pixel] + small.after[pixel];
+            assert!((sum / small.steady[pixel] - 1.0).abs() < 1e-6, "{pixel}");
+        }
+    }
+
+    #[test]
+    fn the_standard_error_is_that_of_cells_that_move_together() {
+        let arrays = with_error(cube(8, 8, 12, 1), 0.1);
+        let small = reduce(&arrays, Factors { pixels: 2, bins: 2 });
+        let variance = small.variance.unwrap();
+        for (cell, variance) in small.transient.iter().zip(variance) {
+            assert!((variance.sqrt() - 0.1 * cell).abs() <= 1e-6 * cell, "{cell} {variance}");
+        }
+    }
+
+    #[test]
+    fn radiance_keeps_the_last_edge_of_a_group() {
+        let mut arrays = cube(1, 1, 5, 1);
+        arrays.quantity = Quantity::RadianceAtUpperEdges;
+        arrays.transient = vec![1.0, 2.0, 3.0, 4.0, 5.0];
+        let small = reduce(&arrays, Factors { pixels: 1, bins: 2 });
+        assert_eq!(small.transient, [2.0, 4.0, 5.0]);
+    }
+
+    #[test]
+    fn the_gentlest_factors_come_first() {
+        let all = Factors::all(&cube(16, 16, 20, 1));
+        let first: Vec<_> = all.iter().take(4).map(|f| (f.pixels, f.bins)).collect();
+        assert_eq!(first, [(1, 1), (1, 2), (2, 1), (2, 2)]);
+        assert_eq!(all.last().map(|f| (f.pixels, f.bins)), Some((16, 20)));
+    }
+}

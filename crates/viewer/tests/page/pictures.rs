@@ -1,0 +1,83 @@
+//! Colours on the canvas are those of the values.
+
+use crate::scene::{Scene, cell};
+use crate::{ask, press, with_page};
+
+/// The colour at the middle of a cell on the stage.
+fn colour_script(x: usize, y: usize) -> String {
+    format!(
+        "(() => {{ const s = tpbViewer.stage.canvas; const box = s.getBoundingClientRect(); \
+         const p = tpbViewer.placeOf({x}, {y}); const k = s.width / box.width; \
+         const c = document.createElement('canvas').getContext('2d'); \
+         c.drawImage(s, (p.x - box.left) * k, (p.y - box.top) * k, 1, 1, 0, 0, 1, 1); \
+         return Array.from(c.getImageData(0, 0, 1, 1).data); }})()"
+    )
+}
+
+/// The curve of sRGB, in 8 bits.
+fn srgb(linear: f64) -> f64 {
+    let v = linear.clamp(0.0, 1.0);
+    255.0 * if v <= 0.003_130_8 { 12.92 * v } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[test]
+fn greys_follow_value_and_exposure_at_any_zoom() {
+    let scene = Scene::new(1);
+    let (x, y, bin) = (6, 4, 22);
+    with_page(&scene.comparison(), |page| {
+        // The crosshair elsewhere, out of the way of zooming around it.
+        ask(page, &format!("tpbViewer.update({{ bin: {bin}, x: {}, y: {y} }})", x - 2));
+        let white = ask(page, "tpbViewer.viewer.view.white(tpbViewer.viewer)").as_f64().unwrap();
+        for exposure in [-2.0, 0.0, 1.5] {
+            ask(page, &format!("tpbViewer.update({{ exposure: {exposure} }})"));
+            for (method, arrays) in scene.all().into_iter().enumerate() {
+                press(page, &[&(method + 1).to_string()]);
+                let expected = srgb(cell(arrays, x, y, bin, 0) / white * f64::exp2(exposure));
+                let found = ask(page, &colour_script(x, y))[0].as_f64().unwrap();
+                // 1 % of a value is at most 1.2 of 255 steps.
+                assert!((found - expected).abs() <= 2.3, "{method} {exposure}: {found} {expected}");
+            }
+        }
+        let before = ask(page, &colour_script(x, y));
+        press(page, &["+", "+"]);
+        assert_eq!(ask(page, &colour_script(x, y)), before, "pixels stay sharp");
+    });
+}
+
+#[test]
+fn white_is_the_references_for_all_methods() {
+    let scene = Scene::new(3);
+    with_page(&scene.comparison(), |page| {
+        let white = "tpbViewer.viewer.view.white(tpbViewer.viewer)";
+        let first = ask(page, white);
+        press(page, &["2"]);
+        assert_eq!(ask(page, white), first);
+        press(page, &["f", "Home", "PageDown"]);
+        let early = ask(page, white).as_f64().unwrap();
+        press(page, &["End"]);
+        let late = ask(page, white).as_f64().unwrap();
+        assert!(
+            late < 0.5 * early && late > 0.0,
+            "exposure follows the fading frame: {early} {late}"
+        );
+    });
+}
+
+#[test]
+fn maps_tell_times_within_a_bin() {
+    let scene = Scene::new(1);
+    with_page(&scene.comparison(), |page| {
+        ask(page, "tpbViewer.update({ view: 'peak' })");
+        for (x, y) in [(0, 0), (5, 3), (13, 9)] {
+            let read = format!(
+                "tpbViewer.viewer.view.read(tpbViewer.viewer, tpbViewer.viewer.cubes[2], {x}, {y})"
+            );
+            let found = ask(page, &read).as_f64().unwrap();
+            let front = 3.0 + 0.9 * f64::from(x) + 1.1 * f64::from(y);
+            let exact = 2.0 + 0.06 * (front.ceil() + 0.5);
+            assert!((found - exact).abs() < 1e-9, "{x} {y}: {found} m for {exact} m");
+        }
+        let low = ask(page, "document.getElementById('scale-low').textContent");
+        assert!(low.as_str().unwrap().ends_with(" ns"), "{low}");
+    });
+}
