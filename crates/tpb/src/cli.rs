@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use tpb_film::Pulse;
 
 use crate::values;
+use crate::viewer::{CompareArgs, ViewArgs};
 
 /// Renders light in flight: transient photon beams and a transient path tracer.
 #[derive(Debug, Parser)]
@@ -26,6 +27,10 @@ pub(crate) enum Command {
     Plan(Box<PlanArgs>),
     /// Check a result and print what is in it
     Info(InfoArgs),
+    /// Show a result as a page for the browser
+    View(ViewArgs),
+    /// Print the errors of results against a reference, and show them side by side
+    Compare(Box<CompareArgs>),
     /// Print or draw an analytic solution, at a point or over a range of an input
     Reference(ReferenceArgs),
     /// Print the JSON schema of scene files

@@ -7,6 +7,7 @@
 //! * [`prepare`]: what `render` and `plan` share — the scene, its plan, the method;
 //! * [`folder`]: the result folder, safe against accidents;
 //! * [`mod@reference`]: analytic solutions;
+//! * [`viewer`]: results as pages, and their error numbers;
 //! * [`watch`]: progress bar and ctrl-c;
 //! * [`failure`], [`mod@print`]: all that is printed goes through these.
 //!
@@ -25,6 +26,7 @@ mod render;
 mod schema;
 mod summary;
 mod values;
+mod viewer;
 mod watch;
 
 use std::process::ExitCode;
@@ -39,6 +41,8 @@ fn main() -> ExitCode {
         Command::Plan(args) => plan::run(args),
         Command::Info(args) => info::run(args),
         Command::Reference(args) => reference::run(args),
+        Command::View(args) => viewer::view(args),
+        Command::Compare(args) => viewer::compare(args),
         Command::Schema => schema::run(),
     };
     match outcome {

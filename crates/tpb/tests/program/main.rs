@@ -1,5 +1,6 @@
 //! The program as its users meet it: the built binary, run in a folder of its own.
 
+mod compare;
 mod errors;
 mod files;
 mod interrupt;

@@ -6,7 +6,7 @@ use crate::{FEW, SMALL, assert_done, program, root, stdout, tpb};
 
 #[test]
 fn help() {
-    for subcommand in ["", "render", "plan", "info", "reference", "schema"] {
+    for subcommand in ["", "render", "plan", "info", "view", "compare", "reference", "schema"] {
         let arguments: Vec<&str> = subcommand.split_whitespace().chain(["--help"]).collect();
         let output = tpb(&root(), arguments);
         assert_done(&output);

@@ -1,0 +1,98 @@
+//! `tpb compare`: error numbers of results against one of them, and their page.
+
+use std::process::ExitCode;
+
+use tpb_viewer::{Comparison, Loaded, bring_together};
+
+use super::input::{Input, name};
+use super::numbers::{Judged, as_json, as_text};
+use super::{CompareArgs, describe, open_page, write_page};
+use crate::failure::Failure;
+use crate::print;
+
+/// Reads, judges, writes, prints.
+pub(crate) fn run(args: &CompareArgs) -> Result<ExitCode, Failure> {
+    let paths = [Some(&args.a), Some(&args.b), args.reference.as_ref()];
+    let paths: Vec<_> = paths.into_iter().flatten().collect();
+    if args.labels.len() > paths.len() {
+        let message = format!("{} labels for {} results", args.labels.len(), paths.len());
+        return Err(Failure::with_help(message, "labels are in the order A, B, reference"));
+    }
+    let mut inputs = Vec::with_capacity(paths.len());
+    for (index, path) in paths.iter().enumerate() {
+        inputs.push(Input::read(path, args.labels.get(index))?);
+    }
+    let mut loaded: Vec<&mut Loaded> = inputs.iter_mut().map(|input| &mut input.loaded).collect();
+    let timed = bring_together(&mut loaded)?;
+    tell_apart(&mut inputs, |index| paths[index].display().to_string());
+    // Without a reference of its own, the first judges the second.
+    let reference = if args.reference.is_some() { 2 } else { 0 };
+    let judged = judge(&inputs, reference);
+    let page = if args.no_page {
+        None
+    } else {
+        let mut comparison = comparison(args, &inputs, reference);
+        comparison.timed = timed;
+        comparison.budget_bytes = args.page.budget_bytes();
+        let default = format!("compare-{}-{}", name(&args.a), name(&args.b));
+        Some(write_page(&comparison, &default, &args.page)?)
+    };
+    if args.json {
+        let path = page.as_ref().map(|(path, report)| (path.as_path(), report));
+        print::out(&as_json(&inputs, reference, &judged, path))?;
+    } else {
+        let page = page.as_ref().map(|(path, report)| describe(path, report));
+        print::out(&as_text(&inputs, reference, &judged, page.as_deref()))?;
+    }
+    if let Some((path, _)) = &page {
+        open_page(path, &args.page)?;
+    }
+    let sound = inputs.iter().all(|input| input.loaded.is_sound());
+    Ok(if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Equal labels become the paths.
+fn tell_apart(inputs: &mut [Input], path: impl Fn(usize) -> String) {
+    let labels: Vec<String> = inputs.iter().map(|input| input.label.clone()).collect();
+    for (index, input) in inputs.iter_mut().enumerate() {
+        if labels.iter().filter(|label| **label == input.label).count() > 1 {
+            input.label = path(index);
+        }
+    }
+}
+
+fn judge(inputs: &[Input], reference: usize) -> Vec<Judged> {
+    let others = (0..inputs.len()).filter(|&index| index != reference);
+    others
+        .map(|index| Judged::new(index, &inputs[index].loaded, &inputs[reference].loaded))
+        .collect()
+}
+
+/// Keys for links: labels in plain letters, told apart by a number.
+fn keys(inputs: &[Input]) -> Vec<String> {
+    let mut keys: Vec<String> = Vec::new();
+    for input in inputs {
+        let letters = input.label.to_lowercase();
+        let words: Vec<&str> =
+            letters.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        let key = words.join("-");
+        let taken = keys.contains(&key) || key.is_empty();
+        keys.push(if taken { format!("{key}-{}", keys.len() + 1) } else { key });
+    }
+    keys
+}
+
+fn comparison<'a>(args: &CompareArgs, inputs: &'a [Input], reference: usize) -> Comparison<'a> {
+    let keys = keys(inputs);
+    let methods = inputs.iter().zip(&keys).enumerate();
+    let methods = methods
+        .map(|(index, (input, key))| {
+            let mut method = input.method(key);
+            method.is_reference = index == reference;
+            method
+        })
+        .collect();
+    let names = || format!("{} and {}", inputs[0].label, inputs[1].label);
+    let scene = inputs.iter().find_map(Input::scene);
+    Comparison::new(args.title.clone().or(scene).unwrap_or_else(names), methods)
+}

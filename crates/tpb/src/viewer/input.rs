@@ -1,0 +1,214 @@
+//! A result and what its report says of it.
+
+use std::path::Path;
+
+use serde_json::Value;
+use tpb_film::Pulse;
+use tpb_render::Report;
+use tpb_viewer::{Loaded, Method, load};
+
+use crate::failure::Failure;
+use crate::folder;
+
+/// A result to show.
+#[derive(Debug)]
+pub(super) struct Input {
+    /// What people read.
+    pub(super) label: String,
+    pub(super) loaded: Loaded,
+    report: Option<Report>,
+}
+
+impl Input {
+    /// Reads a result; a cube of another program has no report.
+    pub(super) fn read(path: &Path, label: Option<&String>) -> Result<Self, Failure> {
+        let loaded = load(path)?;
+        let report = folder::read_report(&folder::report_of(path)).ok();
+        // The report beside an archive of ours is its own only if it tells of the same arrays.
+        let report = report.filter(|report| {
+            let (film, arrays) = (&report.film, &loaded.arrays);
+            let ours = loaded.file.file_name().is_some_and(|name| name == "transient.npz");
+            ours && (film.width, film.height, film.bins, film.channels)
+                == (arrays.width, arrays.height, arrays.bins, arrays.channels)
+        });
+        let label = label.cloned().unwrap_or_else(|| name(path));
+        Ok(Self { label, loaded, report })
+    }
+
+    /// The scene, if it is known.
+    pub(super) fn scene(&self) -> Option<String> {
+        let file = &self.report.as_ref()?.scene.file;
+        Some(Path::new(file).file_stem()?.to_string_lossy().into_owned())
+    }
+
+    /// As the page shows it.
+    pub(super) fn method(&self, key: &str) -> Method<'_> {
+        let mut method = Method::new(key, &self.label, &self.loaded.arrays);
+        method.caption = self.loaded.remarks.join("; ");
+        method.provenance.push(("file".to_owned(), self.loaded.file.display().to_string()));
+        if let Some(report) = &self.report {
+            method.provenance.extend(provenance(report));
+            method.command = Some(command(report));
+        }
+        method
+    }
+}
+
+/// The name of a file or folder without what precedes it; an archive of ours is named by its folder.
+pub(super) fn name(path: &Path) -> String {
+    let of = |path: &Path| path.file_stem().map(|name| name.to_string_lossy().into_owned());
+    let in_folder = path.file_name().is_some_and(|name| name == "transient.npz");
+    let folder = path.parent().filter(|_| in_folder).and_then(of);
+    let absolute = || path.canonicalize().ok().and_then(|path| of(&path));
+    folder.or_else(|| of(path)).or_else(absolute).unwrap_or_else(|| "result".to_owned())
+}
+
+/// A number of seconds.
+fn seconds(value: f64) -> String {
+    format!("{value:.2} s")
+}
+
+/// How a result was made, by its report.
+fn provenance(report: &Report) -> Vec<(String, String)> {
+    let run = &report.run;
+    let mut rows = vec![
+        ("program", report.program.clone()),
+        ("scene", report.scene.file.clone()),
+        ("method", report.method.name.clone()),
+        ("seed", report.options.run.seed.to_string()),
+        ("passes", run.passes.to_string()),
+        (
+            "wall time",
+            format!("{}, {} of it setup", seconds(run.wall_seconds), seconds(run.setup_seconds)),
+        ),
+    ];
+    rows.extend(run.cpu_seconds.map(|cpu| ("CPU time", seconds(cpu))));
+    let error = |error: f64| format!("{:.3} % (median relative error of a pixel)", 100.0 * error);
+    rows.extend(run.relative_error.map(|value| ("error", error(value))));
+    rows.push(("pulse", pulse(report.options.pulse)));
+    rows.push(("options", options(&report.method.options)));
+    rows.extend(report.warnings.iter().map(|warning| ("warning", warning.clone())));
+    rows.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+/// A pulse as `--pulse` takes it.
+fn pulse(pulse: Pulse) -> String {
+    // Full width at half maximum of a Gaussian: 2 √(2 ln 2) σ.
+    const FWHM: f64 = 2.354_820_045_030_949_3;
+    match pulse {
+        Pulse::Delta => "delta".to_owned(),
+        Pulse::Gaussian { sigma_s } => format!("gaussian:{}ps", sigma_s * FWHM * 1e12),
+        Pulse::Box { width_s } => format!("box:{}ps", width_s * 1e12),
+        Pulse::Continuous => "continuous".to_owned(),
+    }
+}
+
+/// Members of an object as `name value`, separated by commas; numbers to four digits.
+fn options(options: &Value) -> String {
+    let text = |value: &Value| match (value, value.as_f64()) {
+        (Value::String(word), _) => word.clone(),
+        (Value::Number(number), Some(float)) if number.is_f64() => {
+            let rounded: f64 = format!("{float:.3e}").parse().unwrap_or(float);
+            rounded.to_string()
+        }
+        _ => value.to_string(),
+    };
+    let members = options.as_object().into_iter().flatten();
+    let parts = members.map(|(name, value)| format!("{} {}", name.replace('_', " "), text(value)));
+    parts.collect::<Vec<_>>().join(", ")
+}
+
+/// The command that makes a result again: same scene, film, depths, seed and number of passes.
+/// Other values of the scene that were set on the command line are in the report alone.
+fn command(report: &Report) -> String {
+    let mut parts = vec![
+        "tpb render".to_owned(),
+        quoted(&report.scene.file),
+        format!("--method {}", report.method.name),
+        format!("--passes {}", report.run.passes),
+        format!("--seed {}", report.options.run.seed),
+    ];
+    let method = &report.method;
+    let deepest = method.max_depth.map_or_else(|| "-1".to_owned(), |depth| depth.to_string());
+    parts.push(format!("--max-depth {deepest}"));
+    parts.push(format!("--min-depth {} --rr-depth {}", method.min_depth, method.rr_depth));
+    let film = &report.scene.canonical["sensor"]["film"];
+    for key in ["width", "height", "temporal_bins", "start_opl", "bin_width_opl"] {
+        if film[key].is_number() {
+            parts.push(format!("--set sensor.film.{key}={}", film[key]));
+        }
+    }
+    parts.extend(flags(&report.method.options));
+    if report.options.variance {
+        parts.push("--variance".to_owned());
+    }
+    if report.options.unwarp {
+        parts.push("--unwarp".to_owned());
+    }
+    if report.options.pulse != Pulse::Delta {
+        parts.push(format!("--pulse {}", pulse(report.options.pulse)));
+    }
+    parts.join(" ")
+}
+
+/// Options that the command line has a flag for, by their names in reports.
+const FLAGS: [(&str, &str); 13] = [
+    ("kernel", "--kernel"),
+    ("length", "--beam-length"),
+    ("temporal", "--temporal"),
+    ("radius", "--radius"),
+    ("surface_radius", "--surface-radius"),
+    ("radius_exponent", "--radius-exponent"),
+    ("surface_radius_exponent", "--surface-radius-exponent"),
+    ("beam_photons", "--beam-photons"),
+    ("gather_samples", "--gather-samples"),
+    ("surface_samples", "--surface-samples"),
+    ("light_samples", "--light-samples"),
+    ("photons_per_pass", "--photons"),
+    ("samples_per_pass", "--samples-per-pass"),
+];
+
+/// The flags of effective options.
+fn flags(options: &Value) -> Vec<String> {
+    let of = |(name, flag): &(&str, &str)| match &options[*name] {
+        Value::String(word) => Some(format!("{flag} {word}")),
+        Value::Number(number) => Some(format!("{flag} {number}")),
+        _ => None,
+    };
+    FLAGS.iter().filter_map(of).collect()
+}
+
+/// A word for a shell.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_come_from_files_and_folders() {
+        for (path, expected) in [
+            ("results/beams", "beams"),
+            ("results/beams/", "beams"),
+            ("results/beams/transient.npz", "beams"),
+            ("cube.npy", "cube"),
+        ] {
+            assert_eq!(name(Path::new(path)), expected, "{path}");
+        }
+        assert_ne!(name(Path::new(".")), "result", "the folder's own name");
+    }
+
+    #[test]
+    fn words_are_safe_in_a_shell() {
+        assert_eq!(quoted("a/b-c.json"), "a/b-c.json");
+        assert_eq!(quoted("my scene.json"), "'my scene.json'");
+        assert_eq!(quoted("it's"), "'it'\\''s'");
+    }
+}

@@ -1,0 +1,155 @@
+//! Pages and error numbers, of results of ours and cubes of other programs.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::{FEW, assert_done, assert_refused, program, render, stderr, stdout, tpb};
+
+const PATH: [&str; 5] = ["--method", "path", "--passes", "2", "--no-pictures"];
+
+/// A `.npy` file of 32-bit floats.
+fn write_npy(path: &Path, shape: &str, values: &[f32]) {
+    let mut header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}");
+    while (header.len() + 11) % 64 != 0 {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend(u16::try_from(header.len()).unwrap().to_le_bytes());
+    bytes.extend(header.bytes());
+    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    fs::write(path, bytes).unwrap();
+}
+
+/// The manifest of a page.
+fn manifest(page: &Path) -> Value {
+    let text = fs::read_to_string(page).unwrap();
+    let (_, rest) = text.split_once("id=\"manifest\">").unwrap();
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+}
+
+#[test]
+fn numbers_are_those_of_their_formulas() {
+    let folder = tempfile::tempdir().unwrap();
+    let cube =
+        |name: &str, values: &[f32]| write_npy(&folder.path().join(name), "(1, 2, 3)", values);
+    cube("truth.npy", &[0.0, 1.0, 2.0, 4.0, 1.0, 0.0]);
+    cube("a.npy", &[0.0, 1.5, 2.0, 4.0, 1.0, 0.0]);
+    cube("b.npy", &[0.0, 1.0, 2.0, 3.0, 1.0, 0.25]);
+    let arguments = ["compare", "a.npy", "b.npy", "--reference", "truth.npy"];
+    let output = tpb(folder.path(), arguments);
+    assert_done(&output);
+    let text = stdout(&output);
+    // The size of the page changes with its scripts.
+    let (numbers, page) = text.split_once("page ").unwrap();
+    insta::assert_snapshot!("compare", numbers.trim_end());
+    assert!(page.trim().starts_with("compare-a-b.html: 0."), "{page}");
+    let output = tpb(folder.path(), [&arguments[..], &["--json", "--no-page"]].concat());
+    assert_done(&output);
+    let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(report["shape"], serde_json::json!([1, 2, 3, 1]));
+    assert_eq!(report["results"][0]["label"], "a");
+    assert_eq!(report["results"][0]["cube"]["nmse"], 0.25 / 22.0);
+    assert_eq!(report["results"][1]["cube"]["bias"], -0.75 / 8.0);
+    assert_eq!(report["results"][1]["steady"]["rmse"], (0.5625_f64 / 2.0).sqrt());
+    assert!(report["page"].is_null());
+    // Without a reference, the first judges the second.
+    let output = tpb(folder.path(), ["compare", "a.npy", "b.npy", "--json", "--no-page"]);
+    let report: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(report["reference"]["label"], "a");
+    assert_eq!(report["results"].as_array().unwrap().len(), 1);
+}
+
+#[test]
+fn a_page_holds_its_results_and_the_commands_that_repeat_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let more = ["--seed", "5", "--variance", "--unwarp", "--max-depth", "9"];
+    assert_done(&render(folder.path(), "path", &[&PATH[..], &more].concat()));
+    let few = ["--passes", "2", "--no-pictures", "--kernel", "2d"];
+    assert_done(&render(folder.path(), "beams", &[&FEW[..], &few].concat()));
+    let labels = ["--label", "paths", "--label", "light beams"];
+    let arguments = [&["compare", "path", "beams", "-o", "page.html"][..], &labels].concat();
+    let output = tpb(folder.path(), arguments);
+    assert_done(&output);
+    let manifest = manifest(&folder.path().join("page.html"));
+    assert_eq!(manifest["title"], "cornell-blocks");
+    assert_eq!(manifest["shape"]["bins"], 40);
+    let methods = manifest["methods"].as_array().unwrap();
+    assert_eq!((&methods[0]["key"], &methods[1]["key"]), (&"paths".into(), &"light-beams".into()));
+    assert_eq!(methods[0]["reference"], true);
+    assert!(methods[0]["errors"].as_array().is_some_and(|errors| !errors.is_empty()));
+    for (name, method) in ["path", "beams"].iter().zip(methods) {
+        let command = method["command"].as_str().unwrap();
+        let words = command.strip_prefix("tpb ").unwrap().split(' ');
+        let again = [&words.collect::<Vec<_>>()[..], &["-o", "again", "--no-pictures"]].concat();
+        assert_done(&tpb(folder.path(), again));
+        let bytes =
+            |result: &str| fs::read(folder.path().join(result).join("transient.npz")).unwrap();
+        assert!(bytes(name) == bytes("again"), "{command} makes the same arrays");
+    }
+    assert_done(&tpb(folder.path(), ["view", "beams"]));
+    assert!(folder.path().join("beams.html").exists());
+}
+
+#[test]
+fn cubes_of_others_meet_results_of_ours() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_done(&render(folder.path(), "path", &PATH));
+    let mut cells = vec![1e-4; 10 * 12 * 40];
+    let other = folder.path().join("other.npy");
+    write_npy(&other, "(10, 12, 40, 1)", &cells);
+    let output = tpb(folder.path(), ["compare", "path", "other.npy"]);
+    assert_done(&output);
+    assert!(stdout(&output).contains("no time axis: that of path/transient.npz is used"));
+    let page = manifest(&folder.path().join("compare-path-other.html"));
+    assert_eq!(page["timed"], true);
+
+    cells[7] = f32::NAN;
+    cells[8] = -1.0;
+    write_npy(&other, "(10, 12, 40)", &cells);
+    let output = tpb(folder.path(), ["compare", "path", "other.npy", "--no-page"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let text = stdout(&output);
+    for part in ["1 of 4800 cells are not finite: left out", "1 of 4800 cells are negative: kept"] {
+        assert!(text.contains(part), "'{part}' is missing in\n{text}");
+    }
+
+    write_npy(&other, "(12, 10, 40)", &cells);
+    let output = tpb(folder.path(), ["compare", "path", "other.npy"]);
+    let parts = ["path/transient.npz has (10, 12, 40, 1)", "other.npy has (12, 10, 40, 1)"];
+    assert_refused(&output, &parts);
+}
+
+#[test]
+fn what_cannot_be_shown_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |arguments: &[&str]| tpb(folder.path(), arguments);
+    write_npy(&folder.path().join("a.npy"), "(1, 1, 2)", &[1.0, 2.0]);
+    fs::write(folder.path().join("text.npz"), "no archive").unwrap();
+    assert_refused(&at(&["view", "nowhere"]), &["nowhere"]);
+    assert_refused(&at(&["view", "text.npz"]), &["text.npz", "neither a result"]);
+    assert_refused(&at(&["compare", "a.npy", "nowhere.npz"]), &["nowhere.npz"]);
+    assert_refused(&at(&["compare", "a.npy"]), &["<B>"]);
+    let three = ["--label", "1", "--label", "2", "--label", "3"];
+    let labels = [&["compare", "a.npy", "a.npy"][..], &three].concat();
+    assert_refused(&at(&labels), &["3 labels for 2 results"]);
+    assert_refused(&at(&["view", "a.npy", "--budget", "0"]), &["MB"]);
+    assert_refused(&at(&["view", "a.npy", "--budget", "-1"]), &["MB"]);
+    assert_refused(&at(&["view", "a.npy", "-o", "no/such/page.html"]), &["no/such/page.html"]);
+    assert_refused(&at(&["compare", "a.npy", "a.npy", "--no-page", "--open"]), &["--no-page"]);
+    assert!(!folder.path().join("a.html").exists());
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn without_a_browser_the_page_is_still_written() {
+    let folder = tempfile::tempdir().unwrap();
+    write_npy(&folder.path().join("a.npy"), "(1, 1, 2)", &[1.0, 2.0]);
+    let mut command = program();
+    command.current_dir(folder.path()).env("PATH", folder.path());
+    let output = command.args(["view", "a.npy", "--open"]).output().unwrap();
+    assert_refused(&output, &["page is written", "no browser", "a.html by hand"]);
+    assert!(folder.path().join("a.html").exists());
+}
