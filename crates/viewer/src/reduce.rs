@@ -33,7 +33,7 @@ impl Factors {
     }
 
     /// All that make sense for a shape, the gentlest first: no axis is reduced by more than is
-    /// needed.
+    /// needed, and pixels, which are looked at, are spared more than bins.
     pub(crate) fn all(arrays: &Arrays) -> Vec<Self> {
         let longest = arrays.width.max(arrays.height);
         let mut all: Vec<Self> = (1..=longest)
@@ -41,7 +41,7 @@ impl Factors {
             .filter(|f| arrays.bins < 2 || f.pixels.max(f.bins) <= 4 * f.pixels.min(f.bins))
             .collect();
         all.push(Self { pixels: longest, bins: arrays.bins.max(1) });
-        all.sort_by_key(|f| (f.pixels.max(f.bins), f.cells()));
+        all.sort_by_key(|f| ((3 * f.pixels).max(2 * f.bins), f.cells()));
         all
     }
 }
@@ -244,7 +244,7 @@ mod tests {
     fn the_gentlest_factors_come_first() {
         let all = Factors::all(&cube(16, 16, 20, 1));
         let first: Vec<_> = all.iter().take(4).map(|f| (f.pixels, f.bins)).collect();
-        assert_eq!(first, [(1, 1), (1, 2), (2, 1), (2, 2)]);
+        assert_eq!(first, [(1, 1), (1, 2), (1, 3), (2, 1)]);
         assert_eq!(all.last().map(|f| (f.pixels, f.bins)), Some((16, 20)));
     }
 }

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use serde_json::Value;
-use tpb_film::Pulse;
 use tpb_render::Report;
 use tpb_viewer::{Loaded, Method, load};
 
 use crate::failure::Failure;
 use crate::folder;
+
+use super::command::{command, pulse};
 
 /// A result to show.
 #[derive(Debug)]
@@ -91,18 +92,6 @@ fn provenance(report: &Report) -> Vec<(String, String)> {
     rows.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
-/// A pulse as `--pulse` takes it.
-fn pulse(pulse: Pulse) -> String {
-    // Full width at half maximum of a Gaussian: 2 √(2 ln 2) σ.
-    const FWHM: f64 = 2.354_820_045_030_949_3;
-    match pulse {
-        Pulse::Delta => "delta".to_owned(),
-        Pulse::Gaussian { sigma_s } => format!("gaussian:{}ps", sigma_s * FWHM * 1e12),
-        Pulse::Box { width_s } => format!("box:{}ps", width_s * 1e12),
-        Pulse::Continuous => "continuous".to_owned(),
-    }
-}
-
 /// Members of an object as `name value`, separated by commas; numbers to four digits.
 fn options(options: &Value) -> String {
     let text = |value: &Value| match (value, value.as_f64()) {
@@ -116,76 +105,6 @@ fn options(options: &Value) -> String {
     let members = options.as_object().into_iter().flatten();
     let parts = members.map(|(name, value)| format!("{} {}", name.replace('_', " "), text(value)));
     parts.collect::<Vec<_>>().join(", ")
-}
-
-/// The command that makes a result again: same scene, film, depths, seed and number of passes.
-/// Other values of the scene that were set on the command line are in the report alone.
-fn command(report: &Report) -> String {
-    let mut parts = vec![
-        "tpb render".to_owned(),
-        quoted(&report.scene.file),
-        format!("--method {}", report.method.name),
-        format!("--passes {}", report.run.passes),
-        format!("--seed {}", report.options.run.seed),
-    ];
-    let method = &report.method;
-    let deepest = method.max_depth.map_or_else(|| "-1".to_owned(), |depth| depth.to_string());
-    parts.push(format!("--max-depth {deepest}"));
-    parts.push(format!("--min-depth {} --rr-depth {}", method.min_depth, method.rr_depth));
-    let film = &report.scene.canonical["sensor"]["film"];
-    for key in ["width", "height", "temporal_bins", "start_opl", "bin_width_opl"] {
-        if film[key].is_number() {
-            parts.push(format!("--set sensor.film.{key}={}", film[key]));
-        }
-    }
-    parts.extend(flags(&report.method.options));
-    if report.options.variance {
-        parts.push("--variance".to_owned());
-    }
-    if report.options.unwarp {
-        parts.push("--unwarp".to_owned());
-    }
-    if report.options.pulse != Pulse::Delta {
-        parts.push(format!("--pulse {}", pulse(report.options.pulse)));
-    }
-    parts.join(" ")
-}
-
-/// Options that the command line has a flag for, by their names in reports.
-const FLAGS: [(&str, &str); 13] = [
-    ("kernel", "--kernel"),
-    ("length", "--beam-length"),
-    ("temporal", "--temporal"),
-    ("radius", "--radius"),
-    ("surface_radius", "--surface-radius"),
-    ("radius_exponent", "--radius-exponent"),
-    ("surface_radius_exponent", "--surface-radius-exponent"),
-    ("beam_photons", "--beam-photons"),
-    ("gather_samples", "--gather-samples"),
-    ("surface_samples", "--surface-samples"),
-    ("light_samples", "--light-samples"),
-    ("photons_per_pass", "--photons"),
-    ("samples_per_pass", "--samples-per-pass"),
-];
-
-/// The flags of effective options.
-fn flags(options: &Value) -> Vec<String> {
-    let of = |(name, flag): &(&str, &str)| match &options[*name] {
-        Value::String(word) => Some(format!("{flag} {word}")),
-        Value::Number(number) => Some(format!("{flag} {number}")),
-        _ => None,
-    };
-    FLAGS.iter().filter_map(of).collect()
-}
-
-/// A word for a shell.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_alphanumeric() || "/._-+=:,".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
 }
 
 #[cfg(test)]
@@ -203,12 +122,5 @@ mod tests {
             assert_eq!(name(Path::new(path)), expected, "{path}");
         }
         assert_ne!(name(Path::new(".")), "result", "the folder's own name");
-    }
-
-    #[test]
-    fn words_are_safe_in_a_shell() {
-        assert_eq!(quoted("a/b-c.json"), "a/b-c.json");
-        assert_eq!(quoted("my scene.json"), "'my scene.json'");
-        assert_eq!(quoted("it's"), "'it'\\''s'");
     }
 }

@@ -1,6 +1,7 @@
 //! `tpb view` and `tpb compare`: results as a page that opens from a file, and their error numbers.
 
 mod args;
+mod command;
 mod compare;
 mod input;
 mod numbers;

@@ -67,7 +67,7 @@ fn a_page_holds_its_results_and_the_commands_that_repeat_them() {
     let folder = tempfile::tempdir().unwrap();
     let more = ["--seed", "5", "--variance", "--unwarp", "--max-depth", "9"];
     assert_done(&render(folder.path(), "path", &[&PATH[..], &more].concat()));
-    let few = ["--passes", "2", "--no-pictures", "--kernel", "2d"];
+    let few = ["--passes", "2", "--no-pictures", "--kernel", "2d", "--set", "fog.albedo=0.5"];
     assert_done(&render(folder.path(), "beams", &[&FEW[..], &few].concat()));
     let labels = ["--label", "paths", "--label", "light beams"];
     let arguments = [&["compare", "path", "beams", "-o", "page.html"][..], &labels].concat();

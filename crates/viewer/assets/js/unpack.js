@@ -19,37 +19,58 @@ async function inflate(bytes) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** Adds to each code its neighbour, which is whole already; arithmetic wraps by itself. */
-function addNeighbours(codes, neighbour, width, pixels) {
-  if (neighbour === "bin") {
-    for (let i = pixels; i < codes.length; i++) codes[i] += codes[i - pixels];
-  } else if (neighbour === "left") {
-    for (let i = 0; i < codes.length; i++) if (i % width !== 0) codes[i] += codes[i - 1];
-  }
+/** Symbols of one stream: Uint16Array, or Uint8Array for standard errors. */
+async function inflateSymbols(id, narrow) {
+  const bytes = await inflate(takeBytes(id));
+  if (narrow) return bytes;
+  const count = bytes.length / 2;
+  const symbols = new Uint16Array(count);
+  for (let i = 0; i < count; i++) symbols[i] = bytes[i] | (bytes[count + i] << 8);
+  return symbols;
 }
 
-/** Codes of one stream: Uint16Array, or Uint8Array for standard errors. */
-async function unpackStream(entry, narrow, width, pixels) {
-  const bytes = await inflate(takeBytes(entry.id));
-  let codes = bytes;
-  if (!narrow) {
-    const count = bytes.length / 2;
-    codes = new Uint16Array(count);
-    for (let i = 0; i < count; i++) codes[i] = bytes[i] | (bytes[count + i] << 8);
+/**
+ * Turns symbols into codes, in place. Symbol 0 is code 0; other symbols tell the difference to a
+ * prediction: the mean of neighbours that are not 0, or else the last code that was not 0.
+ */
+function restoreCodes(codes, neighbours, green, width, pixels) {
+  const largest = codes.BYTES_PER_ELEMENT === 1 ? 255 : 65535;
+  const useLeft = neighbours === "left" || neighbours === "mean";
+  const useAbove = neighbours === "mean";
+  const useBin = neighbours === "bin" || neighbours === "mean";
+  let last = 0;
+  for (let i = 0; i < codes.length; i++) {
+    if (codes[i] === 0) continue;
+    let sum = 0;
+    let count = 0;
+    const add = (from) => {
+      if (codes[from] === 0) return;
+      sum += codes[from] - (green ? green[from] : 0);
+      count++;
+    };
+    if (useLeft && i % width !== 0) add(i - 1);
+    if (useAbove && i % pixels >= width) add(i - width);
+    if (useBin && i >= pixels) add(i - pixels);
+    const base = green ? green[i] : 0;
+    const predicted = base + (count > 0 ? Math.trunc(sum / count) : last);
+    const zigzag = codes[i] - 1;
+    const difference = (zigzag >> 1) ^ -(zigzag & 1);
+    const code = (predicted + difference - 1) % largest;
+    codes[i] = 1 + (code < 0 ? code + largest : code);
+    last = codes[i] - base;
   }
-  addNeighbours(codes, entry.neighbour, width, pixels);
-  return codes;
 }
 
 /** Codes of all channels of an array; [] if it has none. */
 async function unpackChannels(entries, narrow, width, pixels) {
-  const channels = await Promise.all(entries.map((e) => unpackStream(e, narrow, width, pixels)));
-  entries.forEach((entry, channel) => {
-    if (!entry.minus_green) return;
-    const green = channels[1];
-    const codes = channels[channel];
-    for (let i = 0; i < codes.length; i++) codes[i] += green[i];
-  });
+  const channels = await Promise.all(entries.map((entry) => inflateSymbols(entry.id, narrow)));
+  const restore = (channel) => {
+    const { neighbours, minus_green: minusGreen } = entries[channel];
+    restoreCodes(channels[channel], neighbours, minusGreen ? channels[1] : null, width, pixels);
+  };
+  // Green first: the others may be told from it.
+  const order = channels.length === 3 ? [1, 0, 2] : [...channels.keys()];
+  order.forEach(restore);
   return channels;
 }
 

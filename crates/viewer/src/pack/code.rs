@@ -5,8 +5,8 @@
 //! codes are 2.0 % apart, a value is off by at most 1.0 %), S = 100 for images (0.35 %). Code 0 is
 //! 0, code 2^15 is "not finite".
 //!
-//! Standard errors are stored relative to their cell: `1 + round((log2(s/|v|) + 20) 8)` in 8 bits,
-//! off by at most 4.5 %; 0 is none. Ratios below 2^-20 count as 2^-20. Code 255 says that the
+//! Standard errors are stored relative to their cell: `1 + round((log2(s/|v|) + 20) 4)` in 8 bits,
+//! off by at most 9.1 %; 0 is none. Ratios below 2^-20 count as 2^-20. Code 255 says that the
 //! ratio cannot be told: v is 0 and s is not, or either is not finite.
 
 /// Steps an octave of cells.
@@ -19,7 +19,7 @@ pub(crate) const IMAGE_STEPS: f64 = 100.0;
 pub(crate) const OFFSET: f64 = 149.0;
 
 /// Steps an octave of standard errors.
-pub(crate) const ERROR_STEPS: f64 = 8.0;
+pub(crate) const ERROR_STEPS: f64 = 4.0;
 
 /// Octaves below 1 of the smallest relative standard error.
 pub(crate) const ERROR_OFFSET: f64 = 20.0;
@@ -28,8 +28,8 @@ pub(crate) const ERROR_OFFSET: f64 = 20.0;
 pub const VALUE_ERROR: f64 = 0.01;
 
 /// Most that a standard error is off, relative to itself, if it is above 2^-20 of its value:
-/// 2^(1/16) − 1, rounded up.
-pub const SE_ERROR: f64 = 0.045;
+/// 2^(1/8) − 1, rounded up.
+pub const SE_ERROR: f64 = 0.091;
 
 /// Not finite.
 const NOT_FINITE: u16 = 1 << 15;

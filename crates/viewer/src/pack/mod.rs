@@ -1,9 +1,9 @@
 //! Arrays as streams that a browser inflates.
 //!
 //! A cube is stored channel by channel as codes ([`code`]) in the order (bin, row, column). Codes
-//! are replaced by differences to their prediction ([`predict`]), in whole-number arithmetic modulo
-//! 2^16, so that nothing is lost beyond the code; low bytes, then high bytes, are deflated without
-//! a wrapper (RFC 1951): `DecompressionStream("deflate-raw")`.
+//! are replaced by symbols that tell them from their prediction ([`predict`]), in whole numbers, so
+//! that nothing is lost beyond the code; low bytes, then high bytes, are deflated without a wrapper
+//! (RFC 1951): `DecompressionStream("deflate-raw")`.
 
 pub(crate) mod code;
 mod predict;
@@ -66,12 +66,8 @@ impl PackedMethod {
 
 /// Codes in planes: (channel, bin, row, column).
 struct Planes {
-    width: usize,
-    /// Cells of a frame.
-    pixels: usize,
+    shape: predict::Shape,
     channels: Vec<Vec<u16>>,
-    /// Whether all codes are below 256 and take one byte.
-    narrow: bool,
 }
 
 impl Planes {
@@ -91,7 +87,8 @@ impl Planes {
             plane
         };
         let channels = (0..channels).into_par_iter().map(of_channel).collect();
-        Self { width: arrays.width, pixels, channels, narrow: false }
+        let shape = predict::Shape { width: arrays.width, pixels, narrow: false };
+        Self { shape, channels }
     }
 
     fn of_cube(arrays: &Arrays) -> Self {
@@ -105,7 +102,9 @@ impl Planes {
         let pairs = arrays.transient.par_iter().zip(variance);
         let codes: Vec<u16> =
             pairs.map(|(&value, &variance)| u16::from(code::error(value, variance))).collect();
-        Some(Self { narrow: true, ..Self::new(arrays, arrays.bins, &codes) })
+        let mut planes = Self::new(arrays, arrays.bins, &codes);
+        planes.shape.narrow = true;
+        Some(planes)
     }
 
     /// Deflates each channel with the prediction that suits it best.
@@ -121,21 +120,20 @@ impl Planes {
         let codes = &self.channels[channel];
         // Channels 0 and 2 may be told from channel 1: green.
         let guide = (channel != 1).then(|| self.channels.get(1)).flatten().map(Vec::as_slice);
-        let shape = predict::Shape { width: self.width, pixels: self.pixels };
-        let prediction = predict::best(codes, guide, shape, self.narrow);
-        let residuals = prediction.residuals(codes, guide, shape);
-        let bytes = deflate(&residuals, self.narrow)?;
+        let prediction = predict::best(codes, guide, self.shape);
+        let symbols = prediction.symbols(codes, guide, self.shape);
+        let bytes = deflate(&symbols, self.shape.narrow)?;
         Ok(Stream { bytes, prediction })
     }
 }
 
 /// Low bytes, then (unless all are narrow) high bytes, deflated.
-fn deflate(codes: &[u16], narrow: bool) -> io::Result<Vec<u8>> {
+fn deflate(symbols: &[u16], narrow: bool) -> io::Result<Vec<u8>> {
     let mut encoder = DeflateEncoder::new(Vec::new(), Compression::new(EFFORT));
-    let low: Vec<u8> = codes.iter().map(|&code| code as u8).collect();
+    let low: Vec<u8> = symbols.iter().map(|&symbol| symbol as u8).collect();
     encoder.write_all(&low)?;
     if !narrow {
-        let high: Vec<u8> = codes.iter().map(|&code| (code >> 8) as u8).collect();
+        let high: Vec<u8> = symbols.iter().map(|&symbol| (symbol >> 8) as u8).collect();
         encoder.write_all(&high)?;
     }
     encoder.finish()
@@ -151,21 +149,16 @@ mod tests {
     use crate::testing::{cube, with_error};
 
     /// The codes of a stream, as the page unpacks them.
-    fn unpack(
-        stream: &Stream,
-        guide: Option<&[u16]>,
-        shape: predict::Shape,
-        narrow: bool,
-    ) -> Vec<u16> {
+    fn unpack(stream: &Stream, guide: Option<&[u16]>, shape: predict::Shape) -> Vec<u16> {
         let mut bytes = Vec::new();
         DeflateDecoder::new(&stream.bytes[..]).read_to_end(&mut bytes).unwrap();
-        let codes = if narrow {
+        let symbols = if shape.narrow {
             bytes.iter().map(|&low| u16::from(low)).collect()
         } else {
             let (low, high) = bytes.split_at(bytes.len() / 2);
             low.iter().zip(high).map(|(&l, &h)| u16::from_le_bytes([l, h])).collect()
         };
-        stream.prediction.restore(codes, guide, shape)
+        stream.prediction.restore(symbols, guide, shape)
     }
 
     #[test]
@@ -176,14 +169,15 @@ mod tests {
         arrays.transient[7] = f32::MAX;
         arrays.transient[8] = f32::from_bits(1);
         let packed = PackedMethod::new(&arrays).unwrap();
-        let shape = predict::Shape { width: 9, pixels: 63 };
-        let green = unpack(&packed.cube[1], None, shape, false);
-        let green_error = unpack(&packed.errors[1], None, shape, true);
+        let shape = predict::Shape { width: 9, pixels: 63, narrow: false };
+        let narrow = predict::Shape { narrow: true, ..shape };
+        let green = unpack(&packed.cube[1], None, shape);
+        let green_error = unpack(&packed.errors[1], None, narrow);
         for channel in 0..3 {
             let guide = (channel != 1).then_some(green.as_slice());
-            let codes = unpack(&packed.cube[channel], guide, shape, false);
+            let codes = unpack(&packed.cube[channel], guide, shape);
             let guide = (channel != 1).then_some(green_error.as_slice());
-            let errors = unpack(&packed.errors[channel], guide, shape, true);
+            let errors = unpack(&packed.errors[channel], guide, narrow);
             for (at, (&found, &error)) in codes.iter().zip(&errors).enumerate() {
                 let cell = (at % 63 * 30 + at / 63) * 3 + channel;
                 let value = arrays.transient[cell];
@@ -209,8 +203,8 @@ mod tests {
     fn images_are_finer() {
         let arrays = cube(6, 5, 4, 1);
         let packed = PackedMethod::new(&arrays).unwrap();
-        let shape = predict::Shape { width: 6, pixels: 30 };
-        let steady = unpack(&packed.steady[0], None, shape, false);
+        let shape = predict::Shape { width: 6, pixels: 30, narrow: false };
+        let steady = unpack(&packed.steady[0], None, shape);
         for (code, exact) in steady.into_iter().zip(&arrays.steady) {
             assert!((code::decode_image(code) / exact - 1.0).abs() < 3.6e-3);
         }
