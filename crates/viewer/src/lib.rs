@@ -15,6 +15,26 @@
 //! | `assets` | style and scripts of the page, one subject a file |
 //! | `load` | result folders, `.npz`, `.npy` |
 //!
+//! ```no_run
+//! use tpb_viewer::{Comparison, Method, write_comparison};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let (path, long) = (tpb_viewer::load("path".as_ref())?, tpb_viewer::load("long".as_ref())?);
+//! let mut reference = Method::new("reference", "path tracing, 1 h", &long.arrays);
+//! reference.is_reference = true;
+//! let mut method = Method::new("path", "path tracing, 20 s", &path.arrays);
+//! method.provenance.push(("seed".into(), "7".into()));
+//! method.command = Some("tpb render scene.json --method path --passes 12 --seed 7".into());
+//! let comparison = Comparison::new("Cornell blocks", vec![method, reference]);
+//! let report = write_comparison("page.html".as_ref(), &comparison)?;
+//! assert!(report.bytes <= comparison.budget_bytes);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A link may say what is shown first: `page.html#method=path&view=error&bin=40&pixel=12,30`, also
+//! `exposure` (stops) and `theme`; views are `frame`, `steady`, `xt`, `yt`, `mean`, `peak`, `error`,
+//! `steady-error`, `before`, `after`.
+//!
 //! Not handled: results of different shapes or time axes; progressive loading of large pages.
 
 mod assets;

@@ -184,7 +184,7 @@ function redrawTimeLine() {
 
 function describeChart(v, data) {
   const kind = state.chartKind;
-  byId("chart-title").textContent = kind === "pixel" ? `Pixel ${state.x}, ${state.y}` : "All pixels";
+  byId("chart-title").textContent = kind === "pixel" ? `Pixel ${v.column(state.x)}, ${v.row(state.y)}` : "All pixels";
   const peaks = v.cubes.map((cube, index) => {
     const values = data[3 * index + 3];
     let at = -1;
@@ -193,7 +193,7 @@ function describeChart(v, data) {
     });
     return at < 0 ? `${cube.entry.label}: nothing` : `${cube.entry.label}: largest ${digits(values[at])} at ${v.time.text(chart.edges[at])}`;
   });
-  const what = kind === "pixel" ? `Time response of column ${state.x}, row ${state.y}` : `${CHART_KINDS[kind].label} against time`;
+  const what = kind === "pixel" ? `Time response of column ${v.column(state.x)}, row ${v.row(state.y)}` : `${CHART_KINDS[kind].label} against time`;
   byId("chart").setAttribute("aria-label", `${what}, ${isLog() ? "logarithmic" : "linear"} axis. ${peaks.join("; ")}.`);
   const notes = [];
   if (kind === "pixel") notes.push(v.unit);

@@ -28,6 +28,21 @@ class Viewer {
     return this.time.text(this.energies ? 0.5 * (low + high) : high);
   }
 
+  /** Columns or rows of the result that a shown one stands for: "7", or "14–15" of a reduced cube. */
+  named(at, end) {
+    const side = this.manifest.factors[0];
+    const last = Math.min((at + 1) * side, end) - 1;
+    return last > at * side ? `${at * side}–${last}` : String(at * side);
+  }
+
+  column(x) {
+    return this.named(x, this.manifest.rendered.width);
+  }
+
+  row(y) {
+    return this.named(y, this.manifest.rendered.height);
+  }
+
   /** A bin in which much of the image is lit. */
   brightBin() {
     const step = Math.max(1, Math.floor((this.bins * this.leader.pixels) / 1e6));

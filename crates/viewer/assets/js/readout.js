@@ -31,7 +31,7 @@ function drawReadout(v) {
   const unit = view.unit(v);
   const time = view.kind !== "image" || view.moves ? `, ${v.timeOfBin(place.bin)}` : "";
   byId("readout-title").textContent = state.hover ? "Under the cursor" : "Selected pixel";
-  byId("where").textContent = `column ${place.x}, row ${place.y}${time}${unit ? ` · ${unit}` : ""}`;
+  byId("where").textContent = `column ${v.column(place.x)}, row ${v.row(place.y)}${time}${unit ? ` · ${unit}` : ""}`;
   const head = view.colour && v.channels === 3 ? ["R", "G", "B"] : ["value"];
   const rows = v.cubes.map((cube, index) => ({ cube, index, ...cellTexts(v, cube, cell) }));
   const errors = rows.some((row) => row.error);

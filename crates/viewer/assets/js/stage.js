@@ -208,8 +208,12 @@ function describe(v, brightest, scale) {
     : `colours from ${(scale.text ?? digits)(scale.low)} to ${(scale.text ?? digits)(scale.high)}`;
   const text = scale?.text ?? ((value) => `${digits(value)} ${v.view.unit(v)}`.trim());
   const most = v.view.colour ? "brightest cell" : "largest value";
+  const at = v.view.place(v, brightest.x, brightest.y);
+  const where = v.view.kind === "image"
+    ? `column ${v.column(at.x)}, row ${v.row(at.y)}`
+    : `${at.x === undefined ? `row ${v.row(at.y)}` : `column ${v.column(at.x)}`}, ${v.timeOfBin(at.bin)}`;
   const found = brightest.value > -Infinity
-    ? `${most} ${text(brightest.value)} at column ${brightest.x}, row ${brightest.y}`
+    ? `${most} ${text(brightest.value)} at ${where}`
     : "nothing to see";
   const words = `${describeView(v)}. Method ${v.cube.entry.label}, ${exposure}, ${found}.`;
   const say = () => stage.canvas.setAttribute("aria-label", words);

@@ -114,8 +114,8 @@ function describeView(v) {
   return {
     frame: `Frame at ${frame}`,
     steady: "Steady image, light of all times",
-    xt: `Streak of row ${state.y}: columns across, time downwards`,
-    yt: `Streak of column ${state.x}: time across, rows downwards`,
+    xt: `Streak of row ${v.row(state.y)}: columns across, time downwards`,
+    yt: `Streak of column ${v.column(state.x)}: time across, rows downwards`,
     mean: "Mean time of arrival",
     peak: "Time of the brightest bin",
     error: `Error of the frame at ${frame}, ${METRICS[state.metric].label}`,

@@ -154,18 +154,28 @@ fn false_colours_show_the_errors_of_their_formulas() {
 #[test]
 fn the_table_holds_the_numbers_of_the_full_arrays() {
     let scene = Scene::new(1);
-    with_page(&scene.comparison(), |page| {
+    let mut comparison = scene.comparison();
+    let mut judged = vec![true; scene.path.pixels()];
+    judged[17] = false;
+    comparison.judged = Some(judged.clone());
+    comparison.judged_label = "pixels that see no lamp".to_owned();
+    with_page(&comparison, |page| {
         let row = ask(
             page,
             "[...document.querySelectorAll('#numbers tbody tr')].map((row) => \
              [...row.children].map((cell) => cell.textContent))",
         );
-        let expected = Metrics::of_cube(&scene.path, &scene.reference, None);
-        assert_eq!(row[0][0], "All cells");
-        assert_eq!(row[1][0], "path tracing");
-        for (column, exact) in [(1, expected.rmse), (2, expected.nmse), (3, expected.noise)] {
-            let shown: f64 = row[1][column].as_str().unwrap().replace('−', "-").parse().unwrap();
-            assert!((shown / exact.unwrap() - 1.0).abs() < 6e-3, "{column}: {shown} {exact:?}");
+        let groups =
+            [(0, "Cells of pixels that see no lamp", Some(&judged[..])), (3, "All cells", None)];
+        for (first, title, judged) in groups {
+            let expected = Metrics::of_cube(&scene.path, &scene.reference, judged);
+            assert_eq!(row[first][0], title);
+            assert_eq!(row[first + 1][0], "path tracing");
+            for (column, exact) in [(1, expected.rmse), (2, expected.nmse), (3, expected.noise)] {
+                let text = row[first + 1][column].as_str().unwrap().replace('−', "-");
+                let shown: f64 = text.parse().unwrap();
+                assert!((shown / exact.unwrap() - 1.0).abs() < 6e-3, "{column}: {shown} {exact:?}");
+            }
         }
     });
 }
@@ -181,6 +191,16 @@ fn reduced_cubes_are_exact_means_and_sums_and_say_so() {
         let factors = Factors { pixels: factors[0] as usize, bins: factors[1] as usize };
         assert_ne!(factors, Factors::NONE);
         assert_same_cube(&ask(page, &cube_script(1)), &reduce(&scene.beams, factors));
+        ask(page, "tpbViewer.update({ x: 1, y: 2 })");
+        let last = |at: usize| if factors.pixels > 1 { format!("–{at}") } else { String::new() };
+        let name = format!(
+            "Pixel {}{}, {}{}",
+            factors.pixels,
+            last(2 * factors.pixels - 1),
+            2 * factors.pixels,
+            last(3 * factors.pixels - 1)
+        );
+        assert_eq!(ask(page, "document.getElementById('chart-title').textContent"), name);
         let note = ask(page, "document.getElementById('shown').textContent");
         let note = note.as_str().unwrap();
         let parts = ["14 × 10 pixels × 40 bins rendered", "to keep the page small"];
