@@ -24,7 +24,8 @@ pub(crate) struct Manifest<'a> {
     factors: [usize; 2],
     edges: &'a [f64],
     /// Edges of the results' bins, for `frames`.
-    rendered_edges: &'a [f64],
+    /// `None`: they are `edges`.
+    rendered_edges: Option<&'a [f64]>,
     code: Code,
     epsilon: f64,
     interval: f64,
@@ -72,7 +73,25 @@ struct MethodEntry<'a> {
     after: Vec<StreamEntry>,
     steady: Vec<StreamEntry>,
     numbers: Option<&'a Numbers>,
-    frames: &'a FrameCurves,
+    frames: Curves,
+}
+
+/// Errors bin by bin, in digits enough to draw them.
+#[derive(Serialize)]
+struct Curves {
+    mean: Vec<f32>,
+    nmse: Vec<Option<f32>>,
+    bias: Vec<Option<f32>>,
+}
+
+impl Curves {
+    fn new(frames: &FrameCurves) -> Self {
+        let short = |values: &[Option<f64>]| -> Vec<Option<f32>> {
+            values.iter().map(|value| value.map(|value| value as f32)).collect()
+        };
+        let mean = frames.mean.iter().map(|&value| value as f32).collect();
+        Self { mean, nmse: short(&frames.nmse), bias: short(&frames.bias) }
+    }
 }
 
 /// Where a stream is, and how it is undone.
@@ -164,7 +183,7 @@ pub(crate) fn manifest<'a>(
             after: streams.enter(&packed.after),
             steady: streams.enter(&packed.steady),
             numbers: judgement.numbers.as_ref(),
-            frames: &judgement.frames,
+            frames: Curves::new(&judgement.frames),
         })
         .collect();
     let rendered = comparison.first();
@@ -178,7 +197,7 @@ pub(crate) fn manifest<'a>(
         rendered: Shape::of(rendered),
         factors: [factors.pixels, factors.bins],
         edges: &first.opl_edges,
-        rendered_edges: &rendered.opl_edges,
+        rendered_edges: (factors.bins > 1).then_some(&rendered.opl_edges),
         code: Code {
             steps: code::STEPS,
             image_steps: code::IMAGE_STEPS,

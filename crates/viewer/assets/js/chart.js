@@ -53,6 +53,16 @@ function decades(low, high) {
   return all;
 }
 
+/** Up to seven even ticks at 1, 2 or 5 times a power of ten, however small the values are. */
+function evenTicks(low, high) {
+  const rough = (high - low) / 7;
+  const power = 10 ** Math.floor(Math.log10(rough));
+  const step = power * [1, 2, 5, 10].find((factor) => factor * power >= 0.999 * rough);
+  const all = [];
+  for (let at = Math.ceil(low / step); at <= high / step; at++) all.push(at * step);
+  return all;
+}
+
 /** A range of the vertical axis around the curves (bands may leave it). */
 function rangeOf(curves) {
   let low = Infinity;
@@ -71,7 +81,7 @@ function rangeOf(curves) {
 
 /** Columns for uPlot: lower edges (and the last upper one), then low, high, value of each method. */
 function chartData(v) {
-  const edges = state.chartKind === "pixel" ? v.edges : v.manifest.rendered_edges;
+  const edges = state.chartKind === "pixel" ? v.edges : v.manifest.rendered_edges ?? v.edges;
   chart.edges = edges;
   const curves = v.cubes.map((cube) => curveOf(v, cube));
   chart.range = rangeOf(curves);
@@ -118,7 +128,7 @@ function chartOptions(v, box) {
     axes: [
       { ...axis, size: 34, label: v.manifest.timed ? `time [${v.time.name}]` : "bin", labelSize: 16 },
       {
-        ...axis, size: 58, splits: isLog() ? (u, index, low, high) => decades(low, high) : undefined,
+        ...axis, size: 58, splits: (u, index, low, high) => (isLog() ? decades(low, high) : evenTicks(low, high)),
         values: (u, ticks) => ticks.map((t) => (t === null ? "" : digits(t, 2))),
       },
     ],

@@ -31,7 +31,7 @@ const MOVES = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowD
 
 /** Whether the focused control wants a key for itself. */
 function ownKey(target, key) {
-  if (target.closest?.("dialog")) return key !== "?";
+  if (byId("help").open) return key !== "?";
   const kind = target.tagName === "INPUT" ? target.type : target.tagName;
   if (kind === "SELECT") return true;
   if (kind === "BUTTON" || kind === "checkbox") return key === " " || key === "Enter";

@@ -4,11 +4,11 @@ const COLUMNS = [
   ["RMSE", "root mean squared error, in the unit of the cells", (m) => m.rmse, (m) => digits(m.rmse)],
   ["NMSE", "Σ(x − r)²/Σr²", (m) => m.nmse, (m) => digits(m.nmse)],
   ["noise", "part of NMSE that noise is expected to make: Σ(v + v_r)/Σr²", (m) => m.noise, (m) => digits(m.noise)],
-  ["bias²", "NMSE − noise: an estimate of the squared bias", (m) => null, (m) => digits(m.squared_bias)],
+  ["bias²", "NMSE − noise: an estimate of the squared bias", () => null, (m) => digits(m.squared_bias)],
   ["relMSE", "mean of (x − r)²/(r² + ε²)", (m) => m.relative_mse, (m) => digits(m.relative_mse)],
   ["MAPE", "mean of |x − r|/(|r| + ε)", (m) => m.mape, (m) => percent(m.mape)],
   ["SMAPE", "mean of 2|x − r|/(|x| + |r| + ε)", (m) => m.smape, (m) => percent(m.smape)],
-  ["bias", "Σ(x − r)/Σr, with its 95 % interval if cells err independently (in brackets: at most)", (m) => (m.bias === null ? null : Math.abs(m.bias)), biasText],
+  ["bias", "Σ(x − r)/Σr, with its 95 % interval if cells err independently (in brackets: at most)", () => null, biasText],
 ];
 
 function biasText(m) {
@@ -59,7 +59,7 @@ function drawNumbers(v) {
   const numbers = v.cubes.map((cube) => cube.entry.numbers).find(Boolean);
   const of = numbers.cube ?? numbers.steady;
   const notes = [
-    `ε = 1 % of the mean of the reference's lit cells = ${digits(of.epsilon)}. Numbers are over all channels, at full size. The best of a column is bold.`,
+    `ε = 1 % of the mean of the reference's lit cells = ${digits(of.epsilon)}. Numbers are over all channels, at full size. The smallest of a column is bold.`,
   ];
   if (numbers.cube?.noise !== null && numbers.cube !== null) {
     notes.push("noise and bias² need no independence of cells; the interval of the bias takes cells as independent, in brackets its widest.");

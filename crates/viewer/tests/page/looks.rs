@@ -39,8 +39,8 @@ fn both_themes_can_be_read_and_follow_the_system() {
                 "#badge",
             ] {
                 let script = format!("{CONTRAST}(document.querySelector('{element}'))");
-                // Transitions of colours take a moment.
-                ask(page, "new Promise((done) => setTimeout(done, 150))");
+                // Colours change within a moment.
+                page.wait_for("document.getAnimations().length === 0").unwrap();
                 let contrast = ask(page, &script).as_f64().unwrap();
                 assert!(contrast >= 4.5, "{element} in {theme}: {contrast}");
             }
