@@ -2,7 +2,7 @@
 
 use tpb_film::Arrays;
 
-use crate::ViewerError;
+use crate::{PixelErrors, ViewerError};
 
 /// Bytes of a page unless another budget is set: 20 MB.
 pub const DEFAULT_BUDGET: usize = 20_000_000;
@@ -21,6 +21,8 @@ pub struct Method<'a> {
     pub arrays: &'a Arrays,
     /// Whether the others are judged by it.
     pub is_reference: bool,
+    /// What is known of the errors of neighbouring pixels: how wide intervals of reduced cubes are.
+    pub pixel_errors: PixelErrors,
     /// A sentence about it; may be empty.
     pub caption: String,
     /// How it was made, as pairs of name and value, in the order in which they are shown.
@@ -37,6 +39,7 @@ impl<'a> Method<'a> {
             label: label.into(),
             arrays,
             is_reference: false,
+            pixel_errors: PixelErrors::default(),
             caption: String::new(),
             provenance: Vec::new(),
             command: None,

@@ -55,4 +55,4 @@ pub use load::{Loaded, bring_together, load};
 pub use metrics::{FrameCurves, Half, Metrics};
 pub use pack::{SE_ERROR, VALUE_ERROR};
 pub use page::{PageReport, page, write_comparison};
-pub use reduce::{Factors, reduce};
+pub use reduce::{Factors, PixelErrors, reduce};

@@ -13,7 +13,7 @@ use tpb_film::{Arrays, FilmError, atomic_write};
 
 use crate::ViewerError;
 use crate::assets::{PAGE, SCRIPTS, STYLES, UPLOT_LICENCE, UPLOT_SCRIPT};
-use crate::comparison::Comparison;
+use crate::comparison::{Comparison, Method};
 use crate::manifest::{Judgement, manifest};
 use crate::pack::PackedMethod;
 use crate::reduce::{Factors, reduce, reduce_rows};
@@ -96,7 +96,7 @@ fn estimate(comparison: &Comparison<'_>, factors: Factors) -> Result<f64, Viewer
     let sample: Vec<usize> = (0..count).map(|i| (2 * i + 1) * rows / (2 * count)).collect();
     let mut bytes = 0.0;
     for method in &comparison.methods {
-        let part = pack(&reduce_rows(method.arrays, factors, &sample))?;
+        let part = pack(&reduce_rows(method.arrays, factors, method.pixel_errors, &sample))?;
         let sizes = part.streams().map(|stream| stream.bytes.len() as f64);
         bytes += sizes.sum::<f64>() * rows as f64 / count as f64;
     }
@@ -116,12 +116,13 @@ fn build(
 ) -> Result<(String, PageReport), ViewerError> {
     let whole = factors == Factors::NONE;
     let mut packed = Vec::with_capacity(comparison.methods.len());
-    let first = reduce(comparison.first(), factors);
+    let reduced = |method: &Method<'_>| reduce(method.arrays, factors, method.pixel_errors);
+    let first = reduced(&comparison.methods[0]);
     for (index, method) in comparison.methods.iter().enumerate() {
         packed.push(match index {
             0 => pack(&first)?,
             _ if whole => pack(method.arrays)?,
-            _ => pack(&reduce(method.arrays, factors))?,
+            _ => pack(&reduced(method))?,
         });
     }
     let text = html(comparison, factors, &first, &packed, judgements)?;
@@ -191,7 +192,6 @@ fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::comparison::Method;
     use crate::testing::{cube, with_error};
 
     #[test]

@@ -7,7 +7,8 @@
 //!
 //! Variance: the covariances of cells are unknown. `sd(Σ a_i X_i) ≤ Σ |a_i| sd(X_i)` always, so the
 //! reduced standard error is an upper bound: exact where cells move together, too wide by the
-//! square root of their number where they are independent.
+//! square root of their number where they are independent. Where pixels are known to be
+//! independent ([`PixelErrors`]), the bound is taken over the bins of a pixel only.
 
 use std::ops::Range;
 
@@ -46,14 +47,29 @@ impl Factors {
     }
 }
 
+/// What is known of the errors of neighbouring pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PixelErrors {
+    /// Nothing: they may err together, as where a beam crosses many pixels.
+    #[default]
+    Together,
+    /// They are independent: each pixel has samples of its own.
+    Independent,
+}
+
 /// Reduces arrays; a factor of 0 counts as 1.
-pub fn reduce(arrays: &Arrays, factors: Factors) -> Arrays {
+pub fn reduce(arrays: &Arrays, factors: Factors, errors: PixelErrors) -> Arrays {
     let rows: Vec<usize> = (0..arrays.height.div_ceil(factors.pixels.max(1))).collect();
-    reduce_rows(arrays, factors, &rows)
+    reduce_rows(arrays, factors, errors, &rows)
 }
 
 /// Some rows of the reduced arrays.
-pub(crate) fn reduce_rows(arrays: &Arrays, factors: Factors, rows: &[usize]) -> Arrays {
+pub(crate) fn reduce_rows(
+    arrays: &Arrays,
+    factors: Factors,
+    errors: PixelErrors,
+    rows: &[usize],
+) -> Arrays {
     let factors = Factors { pixels: factors.pixels.max(1), bins: factors.bins.max(1) };
     let blocks = Blocks { arrays, factors };
     let edges = &arrays.opl_edges;
@@ -70,18 +86,47 @@ pub(crate) fn reduce_rows(arrays: &Arrays, factors: Factors, rows: &[usize]) -> 
             .chain((!last.is_multiple_of(factors.bins)).then_some(last))
             .filter_map(|edge| edges.get(edge).copied())
             .collect(),
-        transient: blocks.cube(rows, &arrays.transient, f64::from, |mean| mean as f32),
-        variance: arrays.variance.as_ref().map(|variance| {
-            blocks.cube(
-                rows,
-                variance,
-                |v| f64::from(v).sqrt(),
-                |deviation| (deviation * deviation) as f32,
-            )
-        }),
+        transient: blocks.cube(rows, &arrays.transient, Cells::Values),
+        variance: arrays
+            .variance
+            .as_ref()
+            .map(|variance| blocks.cube(rows, variance, Cells::Variances(errors))),
         before: blocks.image(rows, &arrays.before),
         after: blocks.image(rows, &arrays.after),
         steady: blocks.image(rows, &arrays.steady),
+    }
+}
+
+/// What cells are, and so how they add up: within a pixel, over its block, and to a mean.
+#[derive(Clone, Copy)]
+enum Cells {
+    Values,
+    /// Added up as standard errors.
+    Variances(PixelErrors),
+}
+
+impl Cells {
+    /// What is added over the bins of a group.
+    fn read(self, cell: f32) -> f64 {
+        match self {
+            Self::Values => f64::from(cell),
+            Self::Variances(_) => f64::from(cell).sqrt(),
+        }
+    }
+
+    /// What is added over the pixels of a block.
+    fn of_pixel(self, sum: f64) -> f64 {
+        if let Self::Variances(PixelErrors::Independent) = self { sum * sum } else { sum }
+    }
+
+    /// The reduced cell.
+    fn mean(self, sum: f64, pixels: f64) -> f32 {
+        let mean = sum / pixels;
+        match self {
+            Self::Values => mean as f32,
+            Self::Variances(PixelErrors::Together) => (mean * mean) as f32,
+            Self::Variances(PixelErrors::Independent) => (mean / pixels) as f32,
+        }
     }
 }
 
@@ -106,14 +151,8 @@ impl Blocks<'_> {
             .flat_map(move |y| columns.clone().map(move |x| y * self.arrays.width + x))
     }
 
-    /// Means over blocks of sums over groups of `read` cells, each `write`n.
-    fn cube(
-        &self,
-        rows: &[usize],
-        cells: &[f32],
-        read: impl Fn(f32) -> f64 + Sync,
-        write: impl Fn(f64) -> f32 + Sync,
-    ) -> Vec<f32> {
+    /// Means over blocks of sums over groups.
+    fn cube(&self, rows: &[usize], cells: &[f32], kind: Cells) -> Vec<f32> {
         let Arrays { bins, channels, quantity, .. } = *self.arrays;
         if self.factors == Factors::NONE && rows.len() == self.arrays.height {
             return cells.to_vec();
@@ -128,7 +167,7 @@ impl Blocks<'_> {
             !last_only || (bin + 1).is_multiple_of(self.factors.bins) || bin + 1 == bins
         };
         out.par_chunks_exact_mut(size).enumerate().for_each(|(at, out)| {
-            let mut sums = vec![0.0; size];
+            let (mut sums, mut groups) = (vec![0.0; size], vec![0.0; size]);
             let mut pixels = 0.0;
             for pixel in self.pixels(rows[at / self.width()], at % self.width()) {
                 pixels += 1.0;
@@ -136,14 +175,17 @@ impl Blocks<'_> {
                 for (bin, cell) in cells.chunks_exact(channels).enumerate() {
                     if counts(bin) {
                         let first = bin / self.factors.bins * channels;
-                        for (sum, &value) in sums[first..].iter_mut().zip(cell) {
-                            *sum += read(value);
+                        for (group, &value) in groups[first..].iter_mut().zip(cell) {
+                            *group += kind.read(value);
                         }
                     }
                 }
+                for (sum, group) in sums.iter_mut().zip(&mut groups) {
+                    *sum += kind.of_pixel(std::mem::take(group));
+                }
             }
             for (out, sum) in out.iter_mut().zip(sums) {
-                *out = write(sum / pixels);
+                *out = kind.mean(sum, pixels);
             }
         });
         out
@@ -193,7 +235,7 @@ mod tests {
         let arrays = cube(7, 5, 11, 3);
         for factors in [(2, 3), (3, 1), (1, 4), (7, 11), (1, 1)] {
             let factors = Factors { pixels: factors.0, bins: factors.1 };
-            let small = reduce(&arrays, factors);
+            let small = reduce(&arrays, factors, PixelErrors::Together);
             assert_eq!(small.width, 7_usize.div_ceil(factors.pixels));
             assert_eq!(small.opl_edges.len(), small.bins + 1);
             assert_eq!(small.opl_edges.first(), arrays.opl_edges.first());
@@ -213,7 +255,7 @@ mod tests {
     #[test]
     fn bins_still_add_up_to_the_steady_image() {
         let arrays = cube(9, 6, 20, 1);
-        let small = reduce(&arrays, Factors { pixels: 4, bins: 3 });
+        let small = reduce(&arrays, Factors { pixels: 4, bins: 3 }, PixelErrors::Together);
         for pixel in 0..small.pixels() {
             let inside: f64 = small.pixel(pixel).iter().map(|&cell| f64::from(cell)).sum();
             let sum = inside + small.before[pixel] + small.after[pixel];
@@ -224,7 +266,7 @@ mod tests {
     #[test]
     fn the_standard_error_is_that_of_cells_that_move_together() {
         let arrays = with_error(cube(8, 8, 12, 1), 0.1);
-        let small = reduce(&arrays, Factors { pixels: 2, bins: 2 });
+        let small = reduce(&arrays, Factors { pixels: 2, bins: 2 }, PixelErrors::Together);
         let variance = small.variance.unwrap();
         for (cell, variance) in small.transient.iter().zip(variance) {
             assert!((variance.sqrt() - 0.1 * cell).abs() <= 1e-6 * cell, "{cell} {variance}");
@@ -232,11 +274,23 @@ mod tests {
     }
 
     #[test]
+    fn independent_pixels_err_less_together() {
+        let mut arrays = cube(4, 2, 2, 1);
+        arrays.transient.fill(1.0);
+        // Standard errors 1, 2, 3, … 16.
+        arrays.variance = Some((1..=16_u8).map(|s| f32::from(s).powi(2)).collect());
+        let small = reduce(&arrays, Factors { pixels: 2, bins: 2 }, PixelErrors::Independent);
+        // The first block: pixels 0, 1, 4, 5 with bins 1 + 2, 3 + 4, 9 + 10, 11 + 12.
+        let exact = f32::from(9_u16 + 49 + 361 + 529) / 16.0;
+        assert_eq!(small.variance.unwrap()[0], exact);
+    }
+
+    #[test]
     fn radiance_keeps_the_last_edge_of_a_group() {
         let mut arrays = cube(1, 1, 5, 1);
         arrays.quantity = Quantity::RadianceAtUpperEdges;
         arrays.transient = vec![1.0, 2.0, 3.0, 4.0, 5.0];
-        let small = reduce(&arrays, Factors { pixels: 1, bins: 2 });
+        let small = reduce(&arrays, Factors { pixels: 1, bins: 2 }, PixelErrors::Together);
         assert_eq!(small.transient, [2.0, 4.0, 5.0]);
     }
 

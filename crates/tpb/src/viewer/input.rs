@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 use tpb_render::Report;
-use tpb_viewer::{Loaded, Method, load};
+use tpb_viewer::{Loaded, Method, PixelErrors, load};
 
 use crate::failure::Failure;
 use crate::folder;
@@ -48,6 +48,10 @@ impl Input {
         method.caption = self.loaded.remarks.join("; ");
         method.provenance.push(("file".to_owned(), self.loaded.file.display().to_string()));
         if let Some(report) = &self.report {
+            // Each pixel of the path tracer has paths of its own; photons are shared.
+            if report.method.name == "path" {
+                method.pixel_errors = PixelErrors::Independent;
+            }
             method.provenance.extend(provenance(report));
             method.command = Some(command(report));
         }

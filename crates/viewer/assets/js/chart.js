@@ -209,7 +209,7 @@ function describeChart(v, data) {
   if (kind === "pixel") notes.push(v.unit);
   if (kind === "pixel" && v.cubes.some((cube) => cube.hasErrors)) {
     const reduced = v.manifest.factors.some((factor) => factor > 1) || (state.channel === "luminance" && v.channels === 3);
-    notes.push(`bands: 95 %, ±${v.manifest.interval} standard errors${reduced ? " (an upper bound: cells or channels that were added may err together)" : ""}`);
+    notes.push(`bands: 95 %, ±${v.manifest.interval} standard errors${reduced ? " (an upper bound: bins, pixels or channels that were added may err together)" : ""}`);
   }
   if (kind !== "pixel") notes.push("over all pixels and channels, at full size");
   byId("chart-note").textContent = notes.join(" · ");

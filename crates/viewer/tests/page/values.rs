@@ -2,7 +2,9 @@
 
 use serde_json::Value;
 use tpb_film::Arrays;
-use tpb_viewer::{Comparison, Factors, Method, Metrics, SE_ERROR, VALUE_ERROR, reduce};
+use tpb_viewer::{
+    Comparison, Factors, Method, Metrics, PixelErrors, SE_ERROR, VALUE_ERROR, reduce,
+};
 
 use crate::scene::{BIN, SHAPE, Scene, arrays, cell, steady};
 use crate::{ask, numbers, press, with_page};
@@ -190,7 +192,10 @@ fn reduced_cubes_are_exact_means_and_sums_and_say_so() {
         let factors = numbers(&ask(page, "tpbViewer.viewer.manifest.factors"));
         let factors = Factors { pixels: factors[0] as usize, bins: factors[1] as usize };
         assert_ne!(factors, Factors::NONE);
-        assert_same_cube(&ask(page, &cube_script(1)), &reduce(&scene.beams, factors));
+        assert_same_cube(
+            &ask(page, &cube_script(1)),
+            &reduce(&scene.beams, factors, PixelErrors::Together),
+        );
         ask(page, "tpbViewer.update({ x: 1, y: 2 })");
         let last = |at: usize| if factors.pixels > 1 { format!("–{at}") } else { String::new() };
         let name = format!(
