@@ -7,7 +7,7 @@
 //! * [`matrix`]: scenes, methods and media, each with each.
 //! * [`cube`], [`contrasts`], [`measure`], [`comparison`]: time-resolved images as numbers, reduced to the few
 //!   that are judged, batch by batch.
-//! * [`memory`]: renders that are wanted again.
+//! * [`memory`]: renders that are wanted again; [`microfacet`]: rough surfaces in textbook form.
 //! * [`equal_time`], [`reference_cube`]: methods against each other at equal time, and the long
 //!   render that both are compared with.
 //! * [`run_time`]: how the error of a method falls with the time it is given.
@@ -26,6 +26,7 @@ pub mod experiments;
 pub mod matrix;
 pub mod measure;
 pub mod memory;
+pub mod microfacet;
 pub mod pages;
 pub mod reference_cube;
 pub mod registry;

@@ -1,9 +1,9 @@
 //! The camera's side: rays from the eye that gather beams, and what they see on surfaces.
 //!
 //! A camera path follows null boundaries (within a flight), mirrors and glass (one choice by the
-//! Fresnel reflectance; radiance changes by (η before/η behind)² where it crosses) to the first
-//! surface that does not act as a mirror. On each span of a medium it gathers beams. At the end it
-//! adds
+//! Fresnel reflectance; radiance changes by (η before/η behind)² where it crosses) and rough surfaces
+//! ([`crate::rough`]) to the first diffuse one. On each span of a medium it gathers beams. At the
+//! end it adds
 //!
 //! * emission, exact in time: unbiased;
 //! * direct light by next-event estimation through null boundaries: unbiased;
@@ -11,8 +11,8 @@
 //!   ([`crate::surface_map`]).
 //!
 //! Light whose last scattering is in a medium comes from the beams alone, blurred by their kernel.
-//! Each light path thus belongs to exactly one part, by its last scattering event that is not
-//! specular: none (emission), a medium (beams), a diffuse surface lit straight by an emitter that
+//! Each light path thus belongs to exactly one part, by its last scattering event that is neither
+//! specular nor rough: none (emission), a medium (beams), a diffuse surface lit straight by an emitter that
 //! can be connected to (next-event estimation), a diffuse surface lit otherwise (photons).
 //!
 //! The parts differ in cost and variance, so a pass may start more paths for one than for another:
@@ -22,9 +22,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use tpb_film::{Arrival, Ledger, Strip};
-use tpb_optics::{Rgb, Spectrum, Stream, fresnel};
-use tpb_scene::{Bsdf, Dielectric, Flight, Hit, IntegratorSpec, Plan, Reflector, Scene, Vertex};
-use tpb_transport::{Crossing, roulette};
+use tpb_optics::{Spectrum, Stream};
+use tpb_scene::{Flight, Hit, IntegratorSpec, Plan, Scene, Vertex};
+use tpb_transport::{Carrier, DiffuseLobe, Encounter, Response, Turn, roulette};
 
 use crate::Settings;
 use crate::beam::{Beam, CameraRay};
@@ -44,25 +44,27 @@ pub(crate) struct Camera<'a, const C: usize, K> {
     pub(crate) integrator: IntegratorSpec,
     pub(crate) settings: &'a Settings,
     pub(crate) tiles: &'a Tiles<'a, C>,
-    /// For rays that mirrors or glass have turned; `None` in scenes without.
+    /// For rays that mirrors, glass or rough surfaces have turned; `None` in scenes without.
     pub(crate) hierarchy: Option<&'a BeamMap<'a, C>>,
     pub(crate) photons: &'a SurfaceMap<C>,
     pub(crate) kernel: K,
 }
 
 /// A camera path under way, and where it deposits.
-struct Path<'s, 'f, const C: usize> {
+pub(crate) struct Path<'s, 'f, const C: usize> {
     strip: &'s mut Strip<'f, C>,
     pixel: usize,
     /// Column and row of the pixel.
     at: (usize, usize),
     unwarp_opl: f64,
-    vertex: Vertex,
-    direction: DVec3,
-    throughput: Spectrum<C>,
-    opl: f64,
-    /// Specular events so far.
-    events: u32,
+    pub(crate) vertex: Vertex,
+    pub(crate) direction: DVec3,
+    pub(crate) throughput: Spectrum<C>,
+    pub(crate) opl: f64,
+    /// Specular and rough events so far.
+    pub(crate) events: u32,
+    /// Density of the direction \[1/sr\], if the last event was a rough one.
+    pub(crate) drawn_with: Option<f64>,
 }
 
 impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
@@ -89,6 +91,7 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
                 throughput: Spectrum::ONE,
                 opl: 0.0,
                 events: 0,
+                drawn_with: None,
             };
             let shares = (share(gather_samples), share(surface_samples));
             while self.step(&mut path, shares, rng, &mut pairs) && self.survives(&mut path, rng) {}
@@ -119,49 +122,24 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
         if let Some(share) = surface {
             self.emission(path, &hit, share);
         }
-        let goes_on = match self.scene.shape(hit.primitive).bsdf {
-            Bsdf::Null => unreachable!("flights cross null boundaries"),
-            Bsdf::Dielectric(glass) => {
-                path.cross(self.scene, &glass, &hit, rng);
+        let encounter = Encounter::new(self.scene, &flight, &hit, Carrier::Importance);
+        let goes_on = match encounter.respond(rng) {
+            Response::Absorbed => false,
+            Response::Turned(turn) => {
+                path.turn(&turn);
                 true
             }
-            Bsdf::Opaque { front, back } => {
-                let (reflector, normal) = if path.direction.dot(hit.normal) < 0.0 {
-                    (front, hit.normal)
-                } else {
-                    (back, -hit.normal)
-                };
-                self.reflect(path, reflector, (&hit, normal), surface, rng)
-            }
-        };
-        path.events += 1;
-        goes_on && self.integrator.reaches(path.events + 1) && !path.throughput.is_zero()
-    }
-
-    /// An opaque surface, seen from the side of `normal`: mirrors turn the path, others end it.
-    fn reflect(
-        &self,
-        path: &mut Path<'_, '_, C>,
-        reflector: Reflector,
-        (hit, normal): (&Hit, DVec3),
-        surface: Option<f64>,
-        rng: &mut Stream,
-    ) -> bool {
-        match reflector {
-            Reflector::Black => false,
-            Reflector::Mirror(rho) => {
-                path.throughput *= rho.channels();
-                path.direction = fresnel::reflect(path.direction, normal);
-                true
-            }
-            Reflector::Diffuse(rho) => {
-                if let (Some(share), false) = (surface, rho.is_zero()) {
-                    self.direct(path, normal, rho, share, rng);
-                    self.indirect(path, hit, normal, rho, share);
+            Response::Diffuse(lobe) => {
+                if let (Some(share), false) = (surface, lobe.reflectance.is_zero()) {
+                    self.direct(path, &lobe, share, rng);
+                    self.indirect(path, &hit, &lobe, share);
                 }
                 false
             }
-        }
+            Response::Rough(lobe) => self.meet_rough(path, &lobe, surface, rng),
+        };
+        path.events += 1;
+        goes_on && self.integrator.reaches(path.events + 1) && !path.throughput.is_zero()
     }
 
     /// Beams seen along a flight.
@@ -194,7 +172,8 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             pairs.add(if events == 0 {
                 self.tiles.query(self.kernel, id, path.at, &ray, add)
             } else {
-                let map = self.hierarchy.expect("scenes with specular shapes have a hierarchy");
+                let map =
+                    self.hierarchy.expect("scenes with shapes that turn rays have a hierarchy");
                 map.query(self.kernel, id, &ray, add)
             });
         }
@@ -206,32 +185,27 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             return;
         }
         if let Some(radiance) = self.scene.emitted::<C>(hit, path.direction) {
+            let share = share * self.hit_weight(path, hit);
             let energy = path.throughput * radiance * share;
             path.deposit(path.opl, energy);
         }
     }
 
     /// Next-event estimation at a diffuse surface.
-    fn direct(
-        &self,
-        path: &mut Path<'_, '_, C>,
-        normal: DVec3,
-        rho: Rgb,
-        share: f64,
-        rng: &mut Stream,
-    ) {
+    fn direct(&self, path: &mut Path<'_, '_, C>, lobe: &DiffuseLobe, share: f64, rng: &mut Stream) {
         if !self.plan.next_event_estimation || !self.integrator.counts(path.events + 2) {
             return;
         }
         let samples = self.settings.light_samples;
-        let reflected = path.throughput * rho.channels() * (share / (PI * f64::from(samples)));
+        let rho = lobe.reflectance.channels();
+        let reflected = path.throughput * rho * (share / (PI * f64::from(samples)));
         for _ in 0..samples {
             let Some(point) = self.scene.sample_light(rng) else { return };
             let Some(light) = self.scene.incident::<C>(&point, path.vertex.position) else {
                 continue;
             };
-            let cosine = light.direction.dot(normal);
-            if cosine <= 0.0 {
+            let cosine = light.direction.dot(lobe.normal);
+            if cosine <= 0.0 || !lobe.allows(light.direction) {
                 continue;
             }
             let way =
@@ -245,14 +219,16 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
     }
 
     /// The density of surface photons.
-    fn indirect(&self, path: &mut Path<'_, '_, C>, hit: &Hit, normal: DVec3, rho: Rgb, share: f64) {
+    fn indirect(&self, path: &mut Path<'_, '_, C>, hit: &Hit, lobe: &DiffuseLobe, share: f64) {
         if !self.plan.surface_photons {
             return;
         }
         let area = self.photons.area(self.scene, hit);
-        let reflected = path.throughput * rho.channels() * (share / (PI * area));
+        let reflected = path.throughput * lobe.reflectance.channels() * (share / (PI * area));
         let eta = path.vertex.region.eta;
-        self.photons.query(self.scene, hit, normal, |photon| {
+        // Photons lie on the faces.
+        let face = lobe.guard.unwrap_or(lobe.normal);
+        self.photons.query(self.scene, hit, face, |photon| {
             if self.integrator.counts(photon.depth + path.events) {
                 let lag = eta * photon.direction.dot(hit.position - photon.position);
                 path.deposit(path.opl + photon.opl + lag, reflected * photon.power);
@@ -282,16 +258,16 @@ impl<const C: usize> Path<'_, '_, C> {
         };
     }
 
-    /// Reflection or refraction.
-    fn cross(&mut self, scene: &Scene, glass: &Dielectric, hit: &Hit, rng: &mut Stream) {
-        let crossing = Crossing::choose(glass, self.direction, hit.normal, rng);
-        self.vertex.region = crossing.region(scene, hit, self.vertex.region);
-        let radiance = crossing.eta_ratio * crossing.eta_ratio;
-        self.throughput *= crossing.factor.channels() * radiance;
-        self.direction = crossing.direction;
+    /// A mirror or smooth glass.
+    fn turn(&mut self, turn: &Turn) {
+        self.vertex.region = turn.region;
+        let radiance = turn.eta_ratio * turn.eta_ratio;
+        self.throughput *= turn.factor.channels() * radiance;
+        self.direction = turn.direction;
+        self.drawn_with = None;
     }
 
-    fn deposit(&mut self, opl: f64, energy: Spectrum<C>) {
+    pub(crate) fn deposit(&mut self, opl: f64, energy: Spectrum<C>) {
         self.strip.deposit(self.pixel, self.unwarp_opl, &Arrival::Instant(opl), energy);
     }
 }

@@ -2,20 +2,20 @@
 //!
 //! A radius of about a pixel at the distance of what is looked at blurs no more than the image
 //! does; but not more than a small part of what is looked at, or a coarse film would blur it all.
-//! The rays follow mirrors and glass. Those that see nothing that the radius is for do not count,
+//! The rays follow mirrors, glass and rough surfaces. Those that see nothing that the radius is for do not count,
 //! so that a large ground plane or a distant wall matters as much as the image shows of it.
 
 use std::collections::BTreeMap;
 
-use tpb_optics::{Stream, fresnel};
-use tpb_scene::{Bsdf, Flight, Hit, Medium, Reflector, Scene, Vertex};
-use tpb_transport::Crossing;
+use tpb_optics::Stream;
+use tpb_scene::{Flight, Hit, Medium, Scene, Vertex};
+use tpb_transport::{Carrier, Encounter, Lobe, Response};
 
 use crate::stream_item;
 
 /// Rays along an edge of the film.
 const GRID: usize = 16;
-/// Mirrors and glass that a ray follows at most.
+/// Surfaces that turn it which a ray follows at most.
 const MOST_TURNS: usize = 8;
 /// Beams' radius over the median chord of scattering media at most.
 const MOST_OF_CHORD: f64 = 0.04;
@@ -84,33 +84,27 @@ impl Seen {
             self.look_into_media(scene, &flight, way);
             let Some(hit) = flight.hit else { return };
             way += hit.distance;
-            let primitive = Some(hit.primitive);
-            let mut region = flight.last_region();
-            let front = direction.dot(hit.normal) < 0.0;
-            match scene.shape(hit.primitive).bsdf {
-                Bsdf::Null => unreachable!("flights cross null boundaries"),
-                Bsdf::Dielectric(glass) => {
-                    let crossing = Crossing::choose(&glass, direction, hit.normal, &mut rng);
-                    region = crossing.region(scene, &hit, region);
-                    direction = crossing.direction;
+            let encounter = Encounter::new(scene, &flight, &hit, Carrier::Importance);
+            let region = match encounter.respond(&mut rng) {
+                Response::Absorbed => return,
+                Response::Turned(turn) => {
+                    direction = turn.direction;
+                    turn.region
                 }
-                Bsdf::Opaque { front: on_front, back } => match if front { on_front } else { back }
-                {
-                    Reflector::Black => return,
-                    Reflector::Mirror(_) => {
-                        let normal = if front { hit.normal } else { -hit.normal };
-                        direction = fresnel::reflect(direction, normal);
+                Response::Diffuse(lobe) => {
+                    if !lobe.factor.is_zero() {
+                        self.surfaces.push(way);
+                        self.sizes.push(size(scene, &hit, sizes));
                     }
-                    Reflector::Diffuse(rho) => {
-                        if !rho.is_zero() {
-                            self.surfaces.push(way);
-                            self.sizes.push(size(scene, &hit, sizes));
-                        }
-                        return;
-                    }
-                },
-            }
-            vertex = Vertex { position: hit.position, primitive, region };
+                    return;
+                }
+                Response::Rough(lobe) => {
+                    let Some(drawn) = Lobe::<1>::sample(&lobe, &mut rng) else { return };
+                    direction = drawn.direction;
+                    drawn.region
+                }
+            };
+            vertex = Vertex { position: hit.position, primitive: Some(hit.primitive), region };
         }
     }
 

@@ -17,8 +17,8 @@
 //! along their borders and in all by O(R/chord); likewise discs on open meshes and along the feet
 //! of other objects ([`surface_map`]), and both at borders of shadows, where light is blurred but
 //! not lost. Everything else is unbiased. Each light path
-//! is counted once: by its last scattering event that is not specular it belongs to exactly one of
-//! emission, beams, direct light and surface photons.
+//! is counted once: by its last scattering event that is neither specular nor rough it belongs to
+//! exactly one of emission, beams, direct light and surface photons.
 //!
 //! **Consistency.** Radii shrink with the pass ([`Settings::radii`]). Ray and beam meet with
 //! probability ∝ R and add ∝ 1/R, so that variance after n passes is ∝ 1/(nR) and bias² is ∝ R⁴
@@ -44,6 +44,7 @@ pub mod kernel3d;
 mod method;
 mod options;
 pub mod photons;
+mod rough;
 pub mod surface_map;
 pub mod sweep;
 pub mod tiles;

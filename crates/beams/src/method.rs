@@ -58,7 +58,8 @@ impl<'a> PhotonBeams<'a> {
         let integrator = *integrator;
         let radius = kernel.radius();
         let tiles = &Tiles::new(scene, beams, radius);
-        let turned = !(plan.refracting.is_empty() && plan.mirrors.is_empty());
+        let turning = [&plan.refracting, &plan.mirrors, &plan.rough];
+        let turned = turning.iter().any(|shapes| !shapes.is_empty());
         let hierarchy = turned.then(|| BeamMap::new(kernel, beams, settings.piece_radii * radius));
         let hierarchy = hierarchy.as_ref();
         let camera =

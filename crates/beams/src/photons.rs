@@ -107,9 +107,9 @@ impl<const C: usize> PhotonVisitor<C> for Traces<'_, C> {
             self.surface.push(SurfacePhoton {
                 position: photon.vertex.position,
                 direction: photon.direction,
-                normal: arrival.normal,
+                normal: arrival.lobe.normal,
                 opl: photon.opl,
-                power: photon.power,
+                power: photon.power * arrival.lobe.arriving,
                 primitive: arrival.hit.primitive,
                 depth: photon.depth(),
             });

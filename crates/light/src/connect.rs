@@ -6,7 +6,10 @@ use glam::DVec3;
 use tpb_optics::warp::Equiangular;
 use tpb_optics::{Phase, Spectrum, Stream};
 use tpb_scene::{EmitterKind, IntegratorSpec, Region, Scene, Vertex};
-use tpb_transport::{FreeFlight, Outcome, Photon, PhotonVisitor, SurfaceArrival};
+use tpb_transport::{
+    DiffuseLobe, FreeFlight, Lobe, Outcome, Photon, PhotonVisitor, RoughLobe, SurfaceArrival,
+    Towards,
+};
 
 use crate::sorted::Contribution;
 
@@ -98,14 +101,31 @@ impl<'a, const C: usize> Connections<'a, C> {
         flight.hit.map_or(0.0, |hit| flight.opl(hit.distance))
     }
 
-    /// Connects a surface with Lambert's law: `power` leaves it on the side of `normal`.
+    /// Connects a surface with Lambert's law: `power` leaves it on the side of `normal`, where it
+    /// is `allowed`.
     #[inline]
-    fn connect_surface(&mut self, source: &Source, normal: DVec3, power: Spectrum<C>) {
+    fn connect_surface(
+        &mut self,
+        source: &Source,
+        normal: DVec3,
+        power: Spectrum<C>,
+        allowed: impl Fn(DVec3) -> bool,
+    ) {
         let Some(seen) = self.see(source.vertex.position) else { return };
         let cosine = normal.dot(seen.direction);
-        if cosine > 0.0 {
+        if cosine > 0.0 && allowed(seen.direction) {
             self.connect(source, &seen, power * (cosine * FRAC_1_PI));
         }
+    }
+
+    /// Connects a rough surface, on either of its sides.
+    fn connect_lobe(&mut self, photon: &Photon<C>, lobe: &RoughLobe) {
+        let Some(seen) = self.see(photon.vertex.position) else { return };
+        let towards: Towards<C> = lobe.towards(seen.direction);
+        let vertex = Vertex { region: towards.region, ..photon.vertex };
+        let (opl, depth) = (photon.opl, photon.depth());
+        let source = Source { vertex, opl, depth, on_surface: true };
+        self.connect(&source, &seen, photon.power * lobe.factor() * towards.value);
     }
 
     /// Connects a point of a medium.
@@ -132,7 +152,7 @@ impl<const C: usize> PhotonVisitor<C> for Connections<'_, C> {
         let Some(primitive) = photon.vertex.primitive else { return };
         let normal = self.scene.primitives[primitive as usize].normal(photon.vertex.position);
         let source = Source { vertex: photon.vertex, opl: 0.0, depth: 1, on_surface: true };
-        self.connect_surface(&source, normal, photon.power);
+        self.connect_surface(&source, normal, photon.power, |_| true);
     }
 
     /// The medium along the flight: its collision, and a point drawn about the eye.
@@ -176,7 +196,13 @@ impl<const C: usize> PhotonVisitor<C> for Connections<'_, C> {
             depth: photon.depth(),
             on_surface: true,
         };
-        let power = photon.power * arrival.reflectance.channels();
-        self.connect_surface(&source, arrival.normal, power);
+        let DiffuseLobe { factor, normal, .. } = arrival.lobe;
+        let allowed = |direction| arrival.lobe.allows(direction);
+        self.connect_surface(&source, normal, photon.power * factor.channels(), allowed);
+    }
+
+    #[inline]
+    fn rough_surface(&mut self, photon: &Photon<C>, lobe: &RoughLobe, _: &mut Stream) {
+        self.connect_lobe(photon, lobe);
     }
 }

@@ -17,6 +17,7 @@
 //!
 //! * leaving an area emitter: Φ cosθ_y/π (the emitter seen directly, depth 1);
 //! * at a diffuse surface: Φ ρ cosθ_y/π;
+//! * at a rough surface: Φ f cosθ_y, on the side of rough glass from which the eye sees it;
 //! * in a medium: Φ p(cos), with Φ after the albedo.
 //!
 //! **Two strategies in media.** Collisions alone have the variance of 1/d⁴ near the pinhole. So each

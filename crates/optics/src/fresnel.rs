@@ -1,4 +1,4 @@
-//! Fresnel reflectance of a smooth dielectric boundary (unpolarised), reflection and refraction.
+//! Fresnel reflectance of smooth dielectrics and metals (unpolarised), reflection and refraction.
 //!
 //! Born & Wolf, Principles of Optics, section 1.5.2: R = (R_s + R_p)/2. Fluxes do not scale on
 //! refraction; radiance does, by (η_transmitted/η_incident)², which the camera side accounts for.
@@ -30,6 +30,28 @@ pub fn dielectric(cos_incident: f64, eta_incident: f64, eta_transmitted: f64) ->
     let s = (ratio * cos_incident - cos_transmitted) / (ratio * cos_incident + cos_transmitted);
     let p = (cos_incident - ratio * cos_transmitted) / (cos_incident + ratio * cos_transmitted);
     Fresnel { reflectance: 0.5 * (s * s + p * p), cos_transmitted }
+}
+
+/// Reflectance of a metal with the complex index `eta` − i `k` (relative to what is outside) at
+/// incidence cosine `cos_incident` (0 to 1), unpolarised (Born & Wolf, section 14.4.1): with
+/// a + ib = √(η² − k² − sin²θ − 2iηk), R_s = |(cosθ − a − ib)/(cosθ + a + ib)|² and
+/// R_p = R_s |(a + ib − sinθ tanθ)/(a + ib + sinθ tanθ)|², here multiplied by cos²θ.
+#[inline]
+pub fn conductor(cos_incident: f64, eta: f64, k: f64) -> f64 {
+    if cos_incident == 0.0 {
+        return 1.0;
+    }
+    let cos2 = cos_incident * cos_incident;
+    let sin2 = (1.0 - cos2).max(0.0);
+    let real = eta * eta - k * k - sin2;
+    let modulus = real.hypot(2.0 * eta * k);
+    // a² + b² is the modulus.
+    let a = (0.5 * (modulus + real)).max(0.0).sqrt();
+    let (even, odd) = (modulus + cos2, 2.0 * a * cos_incident);
+    let s = (even - odd) / (even + odd);
+    let (even, odd) = (modulus * cos2 + sin2 * sin2, odd * sin2);
+    let p = s * (even - odd) / (even + odd);
+    0.5 * (s + p)
 }
 
 /// Mirror image of the propagation direction `direction` at a surface with unit `normal`.

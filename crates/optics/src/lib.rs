@@ -4,6 +4,7 @@
 //! * [`spectrum`]: one or three channels, fixed at compile time.
 //! * [`phase`]: isotropic and Henyey-Greenstein phase functions.
 //! * [`fresnel`]: unpolarised Fresnel reflectance, reflection and refraction.
+//! * [`microfacet`]: rough metal and rough glass.
 //! * [`medium`]: transmittance and free flights in a homogeneous medium, mono or coloured.
 //! * [`warp`]: uniform numbers to directions, discs and distances, each with its pdf.
 //! * [`frame`]: orthonormal bases.
@@ -15,6 +16,7 @@
 pub mod frame;
 pub mod fresnel;
 pub mod medium;
+pub mod microfacet;
 pub mod opl;
 pub mod phase;
 pub mod rng;

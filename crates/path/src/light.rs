@@ -8,15 +8,15 @@
 //! next event 1/(1 + e + h)      equiangular e/(1 + e + h)      hit h/(1 + e + h)
 //! ```
 //!
-//! Scattering is sampled in proportion to itself (phase function, or cosine): one function is both
-//! the value of the scattering and its density p_dir.
+//! Phase functions and Lambert's law are drawn in proportion to themselves; at rough surfaces value
+//! and density p_dir differ.
 
 use glam::DVec3;
 use tpb_optics::Spectrum;
 use tpb_optics::medium::transmittance;
 use tpb_optics::warp::Equiangular;
 use tpb_scene::{Flight, Hit, LightPoint, Vertex};
-use tpb_transport::FreeFlight;
+use tpb_transport::{FreeFlight, Towards};
 
 use crate::path::{Found, SeenFrom};
 use crate::walk::Walk;
@@ -51,15 +51,14 @@ impl<const C: usize> Walk<'_, '_, C> {
         density / (density + chosen * (1.0 + e))
     }
 
-    /// Next-event estimation at a vertex with OPL `opl` from the eye. `scattering` is value and
-    /// density of the scattering into a direction.
+    /// Next-event estimation at a vertex with OPL `opl` from the eye.
     #[inline]
     pub(crate) fn next_event(
         &mut self,
         vertex: &Vertex,
         opl: f64,
         seen: Option<&SeenFrom>,
-        scattering: impl Fn(DVec3) -> f64,
+        scattering: impl Fn(DVec3) -> Towards<C>,
     ) {
         if !self.world.strategies.next_event || !self.world.integrator.counts(self.path.depth + 1) {
             return;
@@ -91,7 +90,9 @@ impl<const C: usize> Walk<'_, '_, C> {
             / density;
         let vertex = Vertex { position: flight.at(t), primitive: None, region: part.region };
         let phase = part.medium.phase;
-        let scattering = |direction| phase.value(flight.direction.dot(direction));
+        let scattering = |direction| {
+            Towards::proportional(phase.value(flight.direction.dot(direction)), part.region)
+        };
         // e/(1 + e + h), with e infinite where the free flight's density underflows.
         let opl = self.path.opl + flight.opl(t);
         self.connect(&light, &vertex, opl, throughput, scattering, |h| 1.0 / (1.0 + (1.0 + h) / e));
@@ -105,21 +106,27 @@ impl<const C: usize> Walk<'_, '_, C> {
         vertex: &Vertex,
         opl: f64,
         throughput: Spectrum<C>,
-        scattering: impl Fn(DVec3) -> f64,
+        scattering: impl Fn(DVec3) -> Towards<C>,
         weight: impl Fn(f64) -> f64,
     ) {
         let scene = self.world.scene;
         let Some(incident) = scene.incident::<C>(light, vertex.position) else { return };
-        let value = scattering(incident.direction);
-        let throughput = throughput * incident.flux * (value / light.pdf);
+        let towards = scattering(incident.direction);
+        let value = towards.value / light.pdf * towards.radiance_factor();
+        let throughput = throughput * incident.flux * value;
         if throughput.is_zero() {
             return;
         }
         let (direction, distance) = (incident.direction, incident.distance);
-        let Some(flight) = scene.connect(vertex, direction, distance, light.primitive) else {
+        let vertex = Vertex { region: towards.region, ..*vertex };
+        let Some(flight) = scene.connect(&vertex, direction, distance, light.primitive) else {
             return;
         };
-        let h = if self.world.strategies.hits { value / incident.pdf_solid_angle } else { 0.0 };
+        let h = if self.world.strategies.hits {
+            towards.density / incident.pdf_solid_angle
+        } else {
+            0.0
+        };
         let depth = flight.depth::<C>(scene, distance);
         let energy = throughput * transmittance(depth) * weight(h);
         self.deposit(opl + flight.opl(distance), energy);

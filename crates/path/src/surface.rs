@@ -1,15 +1,12 @@
-//! Scattering at surfaces: diffuse reflectors, mirrors and smooth glass.
+//! Scattering at surfaces.
 //!
-//! At glass one of reflection and refraction is chosen with Fresnel's probability, so that the
-//! importance is unchanged; *radiance* changes by (η_i/η_t)² when the camera's ray refracts from
-//! η_i to η_t, because L/η² is what refraction conserves.
+//! Where a surface turns the path (mirrors, smooth glass) nothing connects to it; where it spreads
+//! light, a point on a light is connected to and a direction is drawn. *Radiance* changes by
+//! (η_i/η_t)² when the camera's ray refracts from η_i to η_t.
 
-use std::f64::consts::FRAC_1_PI;
-
-use glam::DVec3;
-use tpb_optics::{Frame, Rgb, Spectrum, fresnel, warp};
-use tpb_scene::{Bsdf, Dielectric, Flight, Hit, Reflector, Vertex};
-use tpb_transport::{Crossing, absorb_on_surface};
+use tpb_optics::Spectrum;
+use tpb_scene::{Flight, Hit, Vertex};
+use tpb_transport::{Carrier, Encounter, Lobe, Response, absorb_on_surface};
 
 use crate::path::Found;
 use crate::walk::Walk;
@@ -19,56 +16,44 @@ impl<const C: usize> Walk<'_, '_, C> {
     /// one, or its weight is zero.
     #[inline]
     pub(crate) fn scatter_at_surface(&mut self, flight: &Flight, hit: &Hit) {
-        let shape = self.world.scene.shape(hit.primitive);
-        let from_front = flight.direction.dot(hit.normal) < 0.0;
         self.path.opl += flight.opl(hit.distance);
         self.path.vertex = Vertex {
             position: hit.position,
             primitive: Some(hit.primitive),
             region: flight.last_region(),
         };
-        let normal = if from_front { hit.normal } else { -hit.normal };
-        match (shape.bsdf, shape.bsdf.reflector(from_front)) {
-            (Bsdf::Dielectric(glass), _) => self.meet_glass(&glass, hit),
-            (_, Some(Reflector::Diffuse(reflectance))) => {
-                self.reflect_diffusely(reflectance, normal);
+        let encounter = Encounter::new(self.world.scene, flight, hit, Carrier::Importance);
+        match encounter.respond(self.rng) {
+            Response::Absorbed => self.absorb_on_surface(Spectrum::ZERO),
+            Response::Turned(turn) => {
+                self.absorb_on_surface(turn.factor.channels());
+                self.path.vertex.region = turn.region;
+                self.path.direction = turn.direction;
+                self.path.radiance_factor *= turn.eta_ratio * turn.eta_ratio;
+                self.path.found = self.path.found.after_specular();
             }
-            (_, Some(Reflector::Mirror(reflectance))) => self.reflect(reflectance, normal),
-            (_, Some(Reflector::Black) | None) => self.absorb_on_surface(Spectrum::ZERO),
+            Response::Diffuse(lobe) => self.spread(&lobe),
+            Response::Rough(lobe) => self.spread(&lobe),
         }
     }
 
     #[inline]
-    fn reflect_diffusely(&mut self, reflectance: Rgb, normal: DVec3) {
-        self.absorb_on_surface(reflectance.channels());
+    fn spread(&mut self, lobe: &impl Lobe<C>) {
+        self.absorb_on_surface(lobe.factor());
         if self.path.weight.is_zero() {
             return;
         }
         let vertex = self.path.vertex;
         let opl = self.path.opl;
-        let density = |direction: DVec3| normal.dot(direction).max(0.0) * FRAC_1_PI;
-        self.next_event(&vertex, opl, None, density);
-        let local = warp::cosine_hemisphere(self.rng.uniform(), self.rng.uniform());
-        self.path.direction = Frame::from_z(normal).to_world(local);
-        let density = warp::cosine_hemisphere_pdf(local.z);
-        self.path.found = Found::ByScattering { density, seen: None };
-    }
-
-    #[inline]
-    fn reflect(&mut self, reflectance: Rgb, normal: DVec3) {
-        self.absorb_on_surface(reflectance.channels());
-        self.path.direction = fresnel::reflect(self.path.direction, normal);
-        self.path.found = self.path.found.after_specular();
-    }
-
-    fn meet_glass(&mut self, glass: &Dielectric, hit: &Hit) {
-        let crossing = Crossing::choose(glass, self.path.direction, hit.normal, self.rng);
-        self.absorb_on_surface(crossing.factor.channels());
-        let before = self.path.vertex.region;
-        self.path.vertex.region = crossing.region(self.world.scene, hit, before);
-        self.path.direction = crossing.direction;
-        self.path.radiance_factor *= crossing.eta_ratio * crossing.eta_ratio;
-        self.path.found = self.path.found.after_specular();
+        self.next_event(&vertex, opl, None, |direction| lobe.towards(direction));
+        let Some(drawn) = lobe.sample(self.rng) else {
+            return self.absorb_on_surface(Spectrum::ZERO);
+        };
+        self.absorb_on_surface(drawn.weight);
+        self.path.vertex.region = drawn.region;
+        self.path.direction = drawn.direction;
+        self.path.radiance_factor *= drawn.eta_ratio * drawn.eta_ratio;
+        self.path.found = Found::ByScattering { density: drawn.density, seen: None };
     }
 
     /// Weighs the path by a reflectance.

@@ -4,7 +4,7 @@ use glam::DVec3;
 use tpb_film::{Arrival, Ledger, Strip};
 use tpb_optics::{Spectrum, Stream};
 use tpb_scene::{Flight, Vertex};
-use tpb_transport::{FreeFlight, Outcome, Part, roulette};
+use tpb_transport::{FreeFlight, Outcome, Part, Towards, roulette};
 
 use crate::path::{Found, Path, SeenFrom};
 use crate::world::World;
@@ -101,7 +101,7 @@ impl<'a, 'f, const C: usize> Walk<'a, 'f, C> {
         self.path.vertex = Vertex { position, primitive: None, region: part.region };
         let (vertex, opl, phase) = (self.path.vertex, self.path.opl, part.medium.phase);
         self.next_event(&vertex, opl, seen.as_ref(), |direction| {
-            phase.value(flight.direction.dot(direction))
+            Towards::proportional(phase.value(flight.direction.dot(direction)), vertex.region)
         });
         self.path.direction = phase.sample(flight.direction, self.rng);
         let density = phase.value(flight.direction.dot(self.path.direction));

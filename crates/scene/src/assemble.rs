@@ -178,7 +178,7 @@ fn media_indices(parts: &SceneParts) -> Result<Vec<f64>, AssembleError> {
     let mut found: Vec<Option<(f64, String)>> =
         parts.media.iter().map(|m| m.eta.map(|eta| (eta, "its own 'eta'".to_owned()))).collect();
     for shape in &parts.shapes {
-        let (Bsdf::Dielectric(d), Some(b)) = (shape.bsdf, shape.boundary) else { continue };
+        let (Some(d), Some(b)) = (shape.bsdf.interface(), shape.boundary) else { continue };
         for (side, eta) in [(b.interior, d.interior_eta), (b.exterior, d.exterior_eta)] {
             let Some(MediumId(id)) = side else { continue };
             let source = format!("shape '{}'", shape.name);

@@ -4,6 +4,7 @@
 //! `twosided` gives each side its own.
 
 use tpb_optics::Rgb;
+use tpb_optics::microfacet::{Ggx, Metal, RoughConductor};
 
 /// The material of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +13,8 @@ pub enum Bsdf {
     Null,
     /// A smooth interface between two refractive indices.
     Dielectric(Dielectric),
+    /// An interface of microfacets between two refractive indices, which differ.
+    RoughDielectric(Dielectric, Ggx),
     /// An opaque surface with a reflector on each side.
     Opaque {
         /// On the side of the normal.
@@ -21,7 +24,7 @@ pub enum Bsdf {
     },
 }
 
-/// A smooth dielectric interface; `interior` is opposite to the normal.
+/// A dielectric interface; `interior` is opposite to the normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dielectric {
     /// Refractive index opposite to the normal.
@@ -43,6 +46,29 @@ pub enum Reflector {
     Diffuse(Rgb),
     /// A perfect mirror with this reflectance, 0 to 1.
     Mirror(Rgb),
+    /// A rough metal.
+    Rough(RoughMetal),
+}
+
+/// A rough metal with a colour of its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoughMetal {
+    /// Microfacets and Fresnel's reflectance.
+    pub surface: RoughConductor,
+    /// Factor on all reflected light, 0 to 1.
+    pub reflectance: Rgb,
+}
+
+impl Reflector {
+    /// No direction's light is reflected by more than this.
+    pub fn most_reflectance(&self) -> Rgb {
+        match *self {
+            Self::Black => Rgb::ZERO,
+            Self::Diffuse(rho) | Self::Mirror(rho) => rho,
+            // Fresnel's factor at grazing angles is 1.
+            Self::Rough(metal) => metal.reflectance,
+        }
+    }
 }
 
 impl Bsdf {
@@ -51,8 +77,29 @@ impl Bsdf {
     pub fn reflector(&self, facing_front: bool) -> Option<Reflector> {
         match *self {
             Self::Opaque { front, back } => Some(if facing_front { front } else { back }),
-            Self::Null | Self::Dielectric(_) => None,
+            Self::Null | Self::Dielectric(_) | Self::RoughDielectric(..) => None,
         }
+    }
+
+    /// The interface between two refractive indices, smooth or rough, if it is one.
+    #[inline]
+    pub fn interface(&self) -> Option<&Dielectric> {
+        match self {
+            Self::Dielectric(glass) | Self::RoughDielectric(glass, _) => Some(glass),
+            Self::Null | Self::Opaque { .. } => None,
+        }
+    }
+
+    /// Whether it passes light on in one direction only: smooth glass, or a mirror.
+    pub fn is_specular(&self) -> bool {
+        matches!(self, Self::Dielectric(_)) || self.is_mirror()
+    }
+
+    /// Whether some side is rough: it spreads light, but not diffusely.
+    pub fn is_rough(&self) -> bool {
+        let rough = |r| matches!(r, Reflector::Rough(metal) if !metal.reflectance.is_zero());
+        matches!(*self, Self::RoughDielectric(..))
+            || matches!(*self, Self::Opaque { front, back } if rough(front) || rough(back))
     }
 
     /// Whether some side scatters diffusely.
@@ -69,14 +116,19 @@ impl Bsdf {
 
     /// Every factor on light that the material applies (for finding colour).
     pub(crate) fn factors(&self) -> Vec<Rgb> {
-        let of = |r| match r {
-            Reflector::Black => Rgb::ZERO,
-            Reflector::Diffuse(rho) | Reflector::Mirror(rho) => rho,
+        let of = |r: Reflector| match r {
+            Reflector::Rough(RoughMetal { surface, reflectance }) => match surface.metal {
+                Metal::Perfect => vec![reflectance],
+                Metal::Index { eta, k } => vec![reflectance, eta, k],
+            },
+            other => vec![other.most_reflectance()],
         };
         match *self {
             Self::Null => vec![],
-            Self::Dielectric(d) => vec![d.reflectance, d.transmittance],
-            Self::Opaque { front, back } => vec![of(front), of(back)],
+            Self::Dielectric(d) | Self::RoughDielectric(d, _) => {
+                vec![d.reflectance, d.transmittance]
+            }
+            Self::Opaque { front, back } => [of(front), of(back)].concat(),
         }
     }
 }

@@ -20,7 +20,7 @@ mod sensor;
 mod world;
 
 pub use assemble::{AssembleError, EmitterPart, SceneParts, ShapePart};
-pub use bsdf::{Bsdf, Dielectric, Reflector};
+pub use bsdf::{Bsdf, Dielectric, Reflector, RoughMetal};
 pub use emitter::{Emission, Emitter, EmitterKind, Incident, LightPoint};
 pub use flight::{Flight, Hit, Span, Vertex};
 pub use geometry::Primitive;

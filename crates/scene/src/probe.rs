@@ -77,7 +77,7 @@ impl<'a> Probe<'a> {
     /// Adds what one side of a shape says.
     fn read(&self, votes: &mut Votes, shape: usize, front: bool) {
         let Shape { bsdf, boundary, .. } = &self.scene.shapes[shape];
-        if let Bsdf::Dielectric(d) = bsdf {
+        if let Some(d) = bsdf.interface() {
             let eta = if front { d.exterior_eta } else { d.interior_eta };
             votes.eta.get_or_insert((eta, shape));
         }
@@ -149,7 +149,7 @@ impl<'a> Probe<'a> {
                 let (place, shape) = (place.to_owned(), self.scene.shape(p).name.clone());
                 return Err(match self.scene.shape(p).bsdf {
                     Bsdf::Opaque { .. } => AssembleError::OnSurface { place, shape },
-                    Bsdf::Null | Bsdf::Dielectric(_) => AssembleError::OnBoundary { place, shape },
+                    _ => AssembleError::OnBoundary { place, shape },
                 });
             }
         }
@@ -214,7 +214,7 @@ impl<'a> Probe<'a> {
             match shape.bsdf.reflector(front) {
                 None => true,
                 Some(Reflector::Black) => front && shape.emitter.is_some(),
-                Some(Reflector::Diffuse(rho) | Reflector::Mirror(rho)) => !rho.is_zero(),
+                Some(reflector) => !reflector.most_reflectance().is_zero(),
             }
         })
     }

@@ -154,17 +154,23 @@ impl Scene {
         None
     }
 
-    /// The region that light enters through a null or dielectric shape: on the side of the normal
+    /// The region that light enters through a shape that lets it pass: on the side of the normal
     /// if `to_front`.
     #[inline]
     pub fn region_beyond(&self, shape: &Shape, to_front: bool, before: Region) -> Region {
         let medium = shape.boundary.map_or(before.medium, |b| b.side(to_front));
-        let eta = match shape.bsdf {
-            Bsdf::Dielectric(d) if to_front => d.exterior_eta,
-            Bsdf::Dielectric(d) => d.interior_eta,
-            Bsdf::Null | Bsdf::Opaque { .. } => before.eta,
+        let eta = match shape.bsdf.interface() {
+            Some(glass) if to_front => glass.exterior_eta,
+            Some(glass) => glass.interior_eta,
+            None => before.eta,
         };
         Region { medium, eta }
+    }
+
+    /// The normal that shading uses at a hit, where it is not the geometric one; on the same side.
+    #[inline]
+    pub fn shading_normal(&self, hit: &Hit) -> Option<DVec3> {
+        self.primitives[hit.primitive as usize].shading_normal(hit.position)
     }
 
     /// Radiance that the surface at `hit` emits against `direction` (the propagation of the ray

@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 use tpb_film::Ledger;
-use tpb_optics::{Rgb, Spectrum, Stream};
+use tpb_optics::{Spectrum, Stream};
 use tpb_scene::{Emission, Hit, IntegratorSpec, Scene, Vertex};
 
+use crate::DiffuseLobe;
 use crate::carrier::roulette;
 
 /// A photon: a share of the light, with one place, direction and time.
@@ -28,15 +29,13 @@ pub struct Photon<const C: usize> {
     emitted: f64,
 }
 
-/// A photon's arrival at a surface that scatters diffusely, and its reflectance there is not 0.
+/// A photon's arrival at a surface that scatters diffusely, with a reflectance that is not 0.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfaceArrival {
     /// Where.
     pub hit: Hit,
-    /// Unit normal on the side that it came from.
-    pub normal: DVec3,
-    /// Reflectance of that side.
-    pub reflectance: Rgb,
+    /// How the surface reflects; its normal is the face's.
+    pub lobe: DiffuseLobe,
 }
 
 impl<const C: usize> Photon<C> {

@@ -2,7 +2,8 @@
 //!
 //! A photon flies through null boundaries to the next surface, unless its free flight
 //! ([`FreeFlight`]) ends in a collision on the way. A collision leaves the albedo's share, a diffuse
-//! surface its reflectance's; smooth glass reflects with the probability of the Fresnel reflectance.
+//! surface its reflectance's; smooth glass reflects with the probability of the Fresnel reflectance;
+//! rough surfaces draw one of their microfacets as they are seen.
 //! Fluxes do not scale with η² on refraction. Media that only absorb weigh photons, and end none.
 //!
 //! **Depth.** After n scattering events (of any kind but null crossings) a photon's next flight
@@ -21,11 +22,14 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use tpb_film::Ledger;
-use tpb_optics::{Frame, Rgb, Stream, fresnel, warp};
-use tpb_scene::{Bsdf, Flight, Hit, IntegratorSpec, Reflector, Scene, Vertex};
+use tpb_optics::{Spectrum, Stream};
+use tpb_scene::{Flight, Hit, IntegratorSpec, Scene, Vertex};
 
 use crate::carrier::absorb_on_surface;
-use crate::{Crossing, FreeFlight, Outcome, Part, Photon, SurfaceArrival};
+use crate::{
+    Carrier, Encounter, FreeFlight, Lobe, Outcome, Part, Photon, Response, RoughLobe,
+    SurfaceArrival,
+};
 
 /// Photons per parallel task; the division does not depend on threads.
 const CHUNK: u64 = 512;
@@ -68,6 +72,12 @@ pub trait PhotonVisitor<const C: usize> {
     #[inline]
     fn surface(&mut self, photon: &Photon<C>, arrival: &SurfaceArrival, rng: &mut Stream) {
         let _ = (photon, arrival, rng);
+    }
+
+    /// A photon has reached a rough surface, at its vertex: power and direction of arrival.
+    #[inline]
+    fn rough_surface(&mut self, photon: &Photon<C>, lobe: &RoughLobe, rng: &mut Stream) {
+        let _ = (photon, lobe, rng);
     }
 }
 
@@ -197,30 +207,43 @@ impl<V> Walk<'_, V> {
         photon.opl += flight.opl(hit.distance);
         let (position, primitive) = (hit.position, Some(hit.primitive));
         photon.vertex = Vertex { position, primitive, region: flight.last_region() };
-        let front = photon.direction.dot(hit.normal) < 0.0;
-        let normal = if front { hit.normal } else { -hit.normal };
-        let (factor, direction) = match scene.shape(hit.primitive).bsdf {
-            Bsdf::Null => unreachable!("flights cross null boundaries"),
-            Bsdf::Dielectric(glass) => {
-                let crossing = Crossing::choose(&glass, photon.direction, hit.normal, rng);
-                photon.vertex.region = crossing.region(scene, hit, photon.vertex.region);
-                (crossing.factor, crossing.direction)
+        match Encounter::new(scene, flight, hit, Carrier::Light).respond(rng) {
+            Response::Absorbed => self.absorb(photon, Spectrum::ZERO),
+            Response::Turned(turn) => {
+                self.absorb(photon, turn.factor.channels());
+                (photon.vertex.region, photon.direction) = (turn.region, turn.direction);
             }
-            Bsdf::Opaque { front: on_front, back } => match if front { on_front } else { back } {
-                Reflector::Black => (Rgb::ZERO, normal),
-                Reflector::Mirror(rho) => (rho, fresnel::reflect(photon.direction, normal)),
-                Reflector::Diffuse(rho) => {
-                    if !(rho.is_zero() || photon.power.is_zero()) {
-                        let arrival = SurfaceArrival { hit: *hit, normal, reflectance: rho };
-                        self.visitor.surface(photon, &arrival, rng);
-                    }
-                    let local = warp::cosine_hemisphere(rng.uniform(), rng.uniform());
-                    (rho, Frame::from_z(normal).to_world(local))
+            Response::Diffuse(lobe) => {
+                if !(lobe.factor.is_zero() || photon.power.is_zero()) {
+                    self.visitor.surface(photon, &SurfaceArrival { hit: *hit, lobe }, rng);
                 }
-            },
-        };
-        absorb_on_surface(&mut photon.power, factor.channels(), &mut self.ledger);
-        photon.direction = direction;
+                self.spread(photon, &lobe, rng);
+            }
+            Response::Rough(lobe) => {
+                if !photon.power.is_zero() {
+                    self.visitor.rough_surface(photon, &lobe, rng);
+                }
+                self.spread(photon, &lobe, rng);
+            }
+        }
+    }
+
+    /// A direction drawn from a lobe.
+    #[inline]
+    fn spread<const C: usize>(
+        &mut self,
+        photon: &mut Photon<C>,
+        lobe: &impl Lobe<C>,
+        rng: &mut Stream,
+    ) {
+        let Some(drawn) = lobe.sample(rng) else { return self.absorb(photon, Spectrum::ZERO) };
+        self.absorb(photon, lobe.factor() * drawn.weight);
+        (photon.vertex.region, photon.direction) = (drawn.region, drawn.direction);
+    }
+
+    #[inline]
+    fn absorb<const C: usize>(&mut self, photon: &mut Photon<C>, factor: Spectrum<C>) {
+        absorb_on_surface(&mut photon.power, factor, &mut self.ledger);
     }
 }
 

@@ -15,6 +15,8 @@
 //! | `fog` | 1 in a medium, camera inside | single scattering; expected blur of each kernel |
 //! | `ball` | 1 in a medium, camera outside | quadrature along each ray of a fog ball |
 //! | `room` | all: fog in a box, a diffuse floor in it | none: methods against each other |
+//! | `interface` | 1 at rough glass with a lamp in it | textbook BTDF, averaged over pixels |
+//! | `rough` | all: rough glass and rough metal in fog | none: methods against each other |
 
 pub mod cases;
 pub mod medium;
@@ -57,7 +59,7 @@ pub fn all(effort: Effort) -> Experiments {
 }
 
 /// The rows that the quick suite keeps: each case, method, and kind of medium once.
-const QUICK: [&str; 8] = [
+const QUICK: [&str; 9] = [
     "matrix/lamp/coloured/path",
     "matrix/floor/absorbing/path",
     "matrix/fog/forward/path",
@@ -66,6 +68,7 @@ const QUICK: [&str; 8] = [
     "matrix/ball/coloured/path",
     "matrix/ball/backward/light",
     "matrix/room/isotropic/beams-1d",
+    "matrix/interface/absorbing/path",
 ];
 
 #[cfg(test)]

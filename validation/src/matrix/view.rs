@@ -108,6 +108,13 @@ impl Frame {
         cube
     }
 
+    /// The upper and the lower half, where quadrants would need too much light.
+    pub fn halves(&self) -> Vec<(String, Vec<usize>)> {
+        let upper = |pixel: &usize| pixel / self.side < self.side / 2;
+        let (upper, lower) = (0..self.side * self.side).partition(upper);
+        vec![("upper half".to_owned(), upper), ("lower half".to_owned(), lower)]
+    }
+
     /// Square blocks of pixels, two by two.
     pub fn quadrants(&self) -> Vec<(String, Vec<usize>)> {
         let half = self.side / 2;

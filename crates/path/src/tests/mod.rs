@@ -9,6 +9,7 @@ mod cornell;
 mod depths;
 mod diffuse_sphere;
 mod glass;
+mod rough;
 mod single_scattering;
 mod stats;
 mod strategies;

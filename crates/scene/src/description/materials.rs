@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Reference;
-use super::values::{Colour, Fraction, Index, Ior, MeanCosine, NonNegative, grey};
+use super::values::{Colour, Fraction, Index, Ior, MeanCosine, NonNegative, Roughness, grey};
 
 /// What a surface does to light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -15,8 +15,12 @@ pub enum Bsdf {
     Diffuse(Diffuse),
     /// A perfect mirror, on the side of the normal only.
     Conductor(Conductor),
+    /// A rough metal, on the side of the normal only.
+    Roughconductor(RoughConductor),
     /// A smooth interface between two refractive indices.
     Dielectric(Dielectric),
+    /// A rough interface between two refractive indices.
+    Roughdielectric(RoughDielectric),
     /// No surface at all: the boundary of an index-matched medium.
     Null(Null),
     /// Gives each side of an opaque surface its own BSDF.
@@ -52,7 +56,7 @@ pub struct Conductor {
     pub specular_reflectance: Colour<Fraction>,
 }
 
-/// The metals that `conductor` knows.
+/// The metals that `conductor` and `roughconductor` know.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Metal {
@@ -60,10 +64,80 @@ pub enum Metal {
     None,
 }
 
+/// `roughconductor`: a metal of microfacets on the side of the normal; the other side is black. What
+/// one microfacet sends into another is lost, as in Mitsuba: the rougher, the darker.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RoughConductor {
+    /// The distribution of microfacets. Only `ggx` is supported; it must be written, because
+    /// Mitsuba's default is `beckmann`.
+    pub distribution: Distribution,
+    /// Roughness, 1e-4 (a mirror, nearly) to 1; 0.1 unless given.
+    #[serde(default)]
+    pub alpha: Option<Roughness>,
+    /// Roughness along one tangent: must be `alpha_v`, for surfaces are alike in all directions.
+    #[serde(default)]
+    pub alpha_u: Option<Roughness>,
+    /// Roughness along the other tangent: must be `alpha_u`.
+    #[serde(default)]
+    pub alpha_v: Option<Roughness>,
+    /// The metal: `none` reflects everything; instead of `eta` and `k`.
+    #[serde(default)]
+    pub material: Option<Metal>,
+    /// Real part of the metal's refractive index, relative to what is outside; with `k`.
+    #[serde(default)]
+    pub eta: Option<Colour<NonNegative>>,
+    /// Imaginary part of the metal's refractive index, relative to what is outside; with `eta`.
+    #[serde(default)]
+    pub k: Option<Colour<NonNegative>>,
+    /// Factor on reflected light, 0 to 1; 1 is physical.
+    #[serde(default = "white")]
+    pub specular_reflectance: Colour<Fraction>,
+}
+
+/// The distributions of microfacets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Distribution {
+    /// Trowbridge-Reitz.
+    Ggx,
+}
+
 /// `dielectric`: a smooth interface with Fresnel reflection and refraction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Dielectric {
+    /// Refractive index on the side opposite to the normal.
+    #[serde(default = "bk7")]
+    pub int_ior: Ior,
+    /// Refractive index on the side of the normal.
+    #[serde(default = "air")]
+    pub ext_ior: Ior,
+    /// Factor on reflected light, 0 to 1; 1 is physical.
+    #[serde(default = "white")]
+    pub specular_reflectance: Colour<Fraction>,
+    /// Factor on transmitted light, 0 to 1; 1 is physical.
+    #[serde(default = "white")]
+    pub specular_transmittance: Colour<Fraction>,
+}
+
+/// `roughdielectric`: an interface of microfacets that reflect and refract. What one microfacet
+/// sends into another is lost, as in Mitsuba.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RoughDielectric {
+    /// The distribution of microfacets. Only `ggx` is supported; it must be written, because
+    /// Mitsuba's default is `beckmann`.
+    pub distribution: Distribution,
+    /// Roughness, 1e-4 (clear glass, nearly) to 1; 0.1 unless given.
+    #[serde(default)]
+    pub alpha: Option<Roughness>,
+    /// Roughness along one tangent: must be `alpha_v`, for surfaces are alike in all directions.
+    #[serde(default)]
+    pub alpha_u: Option<Roughness>,
+    /// Roughness along the other tangent: must be `alpha_u`.
+    #[serde(default)]
+    pub alpha_v: Option<Roughness>,
     /// Refractive index on the side opposite to the normal.
     #[serde(default = "bk7")]
     pub int_ior: Ior,
@@ -87,8 +161,8 @@ pub struct Null {}
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Twosided {
-    /// The BSDF of the front, and of the back too unless `back` is given: `diffuse` or
-    /// `conductor`.
+    /// The BSDF of the front, and of the back too unless `back` is given: `diffuse`, `conductor` or
+    /// `roughconductor`.
     pub bsdf: Bsdf,
     /// The BSDF of the back (the side opposite to the normal).
     #[serde(default)]

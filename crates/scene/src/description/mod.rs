@@ -29,8 +29,8 @@ use serde::{Deserialize, Serialize};
 pub use emitters::{Area, Emitter, Laser, Point, ShapeEmitter, Spot};
 pub use kinds::Kind;
 pub use materials::{
-    Bsdf, Conductor, Dielectric, Diffuse, Hg, Homogeneous, Isotropic, Medium, Metal, Null, Phase,
-    Twosided,
+    Bsdf, Conductor, Dielectric, Diffuse, Distribution, Hg, Homogeneous, Isotropic, Medium, Metal,
+    Null, Phase, RoughConductor, RoughDielectric, Twosided,
 };
 pub use refused::{Refused, refused_parameter, refused_plugin};
 pub use schema::{schema, schema_text};
@@ -42,7 +42,7 @@ pub use shapes::{Attributes, Cube, Cylinder, Disk, Mesh, Rectangle, Shape, Spher
 pub use transform::{LookAt, Rotate, Scale, Step, Transform, Vector};
 pub use values::{
     Colour, ConeAngle, FieldOfView, Fraction, Index, Ior, Light, MATERIALS, MeanCosine,
-    NonNegative, Positive,
+    NonNegative, Positive, Roughness,
 };
 
 /// `{"type": "ref", "id": ...}`: the object of that id, which may stand later in the file.

@@ -21,17 +21,13 @@ struct Group {
 const GROUPS: &[Group] = &[
     Group {
         kind: "a BSDF",
-        instead: "`conductor` with `material` `none` is a perfect mirror",
-        names: &["roughconductor"],
-    },
-    Group {
-        kind: "a BSDF",
         instead: "`dielectric` is a smooth interface",
-        names: &["roughdielectric", "thindielectric"],
+        names: &["thindielectric"],
     },
     Group {
         kind: "a BSDF",
-        instead: "`diffuse`, `conductor`, `dielectric`, `null` and `twosided` are supported",
+        instead: "`diffuse`, `conductor`, `dielectric`, `roughconductor`, `roughdielectric`, `null` \
+            and `twosided` are supported",
         names: &[
             "blendbsdf",
             "bumpmap",
@@ -173,26 +169,26 @@ pub fn refused_plugin(type_name: &str) -> Option<Refused> {
 }
 
 const PARAMETERS: &[(&str, &str)] = &[
-    ("alpha", "surfaces are perfectly smooth or diffuse"),
+    ("alpha", "`roughconductor` and `roughdielectric` have a roughness"),
     ("camera_unwarp", "unwarping is an option of the output"),
     ("component_format", "the output's formats are options of the command line"),
     ("crop_height", "change `height` and `fov`"),
     ("crop_offset_x", "change `width` and `fov`"),
     ("crop_offset_y", "change `height` and `fov`"),
     ("crop_width", "change `width` and `fov`"),
-    ("eta", "write the refractive indices as `int_ior` and `ext_ior`"),
+    ("eta", "glass has `int_ior` and `ext_ior`; `roughconductor` takes `eta` and `k`"),
     ("far_clip", "nothing is clipped: leave it out"),
     ("file_format", "the output's formats are options of the command line"),
-    ("flip_tex_coords", "textures are not supported: leave it out"),
     ("focal_length", "write the field of view as `fov`, in degrees"),
     ("hide_emitters", "leave it out; `min_depth` 2 leaves out all directly seen light"),
     ("id", "the key of an object in the scene is its id: leave it out"),
-    ("k", "only `material` `none`, a perfect mirror, is supported"),
+    ("k", "only `material` `none`, a perfect mirror; `roughconductor` takes `eta` and `k`"),
     ("near_clip", "nothing is clipped: leave it out"),
     ("principal_point_offset_x", "turn the camera instead"),
     ("principal_point_offset_y", "turn the camera instead"),
     ("sample_border", "leave it out"),
     ("sample_emitters", "leave it out: the method decides"),
+    ("sample_visible", "leave it out: normals are always drawn as they are seen"),
     ("sampler", "leave it out: passes and seed are options of the command line"),
     ("shutter_close", "the scene stands still: leave it out"),
     ("shutter_open", "the scene stands still: leave it out"),

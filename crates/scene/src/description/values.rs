@@ -10,6 +10,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{self, Deserialize, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Serialize, Serializer};
 use tpb_optics::Rgb;
+use tpb_optics::microfacet::Ggx;
 
 macro_rules! bounded_number {
     ($(#[$doc:meta])* $name:ident, $expected:literal, $holds:expr, $($schema:tt)*) => {
@@ -81,6 +82,11 @@ bounded_number!(
     Fraction, "a number from 0 to 1", |v| (0.0..=1.0).contains(&v), "minimum": 0, "maximum": 1
 );
 bounded_number!(
+    /// The roughness of microfacets, 1e-4 to 1.
+    Roughness, "a roughness from 1e-4 to 1", |v| Ggx::RANGE.contains(&v),
+    "minimum": 1e-4, "maximum": 1
+);
+bounded_number!(
     /// The mean cosine of a phase function, between -1 and 1 (exclusive).
     MeanCosine, "a number between -1 and 1 (exclusive)", |v| v.abs() < 1.0,
     "exclusiveMinimum": -1, "exclusiveMaximum": 1
@@ -108,6 +114,11 @@ impl Positive {
     pub const ONE: Self = Self(1.0);
     /// 3 mm, the default bin of mitransient's film.
     pub const THREE_MILLIMETRES: Self = Self(0.003);
+}
+
+impl Roughness {
+    /// The default of Mitsuba's rough materials.
+    pub const MITSUBA: Self = Self(0.1);
 }
 
 impl MeanCosine {

@@ -12,7 +12,7 @@ use glam::DVec3;
 use tpb_accel::Aabb;
 
 pub use cylinder::Cylinder;
-pub use planar::{Outline, Planar};
+pub use planar::{Outline, Planar, VertexData};
 pub use sphere::Sphere;
 
 /// One intersectable piece of a shape.
@@ -61,6 +61,16 @@ impl Primitive {
             Self::Planar(p) => p.normal,
             Self::Sphere(s) => s.normal(position),
             Self::Cylinder(c) => c.normal(position),
+        }
+    }
+
+    /// The normal that shading uses at a point of the primitive, where it is not [`Primitive::normal`]:
+    /// that of a mesh's vertices. It is on the same side.
+    #[inline]
+    pub fn shading_normal(&self, position: DVec3) -> Option<DVec3> {
+        match self {
+            Self::Planar(p) => p.shading_normal(position),
+            Self::Sphere(_) | Self::Cylinder(_) => None,
         }
     }
 

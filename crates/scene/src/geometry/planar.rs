@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use tpb_accel::Aabb;
 use tpb_optics::warp;
 
@@ -19,6 +19,16 @@ pub enum Outline {
     Triangle,
 }
 
+/// What the corners of a triangle say beside their places, in the order of origin, origin + u,
+/// origin + v.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct VertexData {
+    /// Unit normals, on the side of the triangle's own.
+    pub normals: Option<[DVec3; 3]>,
+    /// Texture coordinates.
+    pub uv: Option<[DVec2; 3]>,
+}
+
 /// A planar piece; its normal is along u × v.
 #[derive(Clone, Debug)]
 pub struct Planar {
@@ -30,6 +40,7 @@ pub struct Planar {
     dual_u: DVec3,
     dual_v: DVec3,
     outline: Outline,
+    vertices: Option<Box<VertexData>>,
 }
 
 impl Planar {
@@ -45,7 +56,37 @@ impl Planar {
             dual_u: v.cross(n) / squared,
             dual_v: n.cross(u) / squared,
             outline,
+            vertices: None,
         }
+    }
+
+    /// The same with data of its corners.
+    #[must_use]
+    pub fn with_vertices(self, data: VertexData) -> Self {
+        Self { vertices: (data != VertexData::default()).then(|| Box::new(data)), ..self }
+    }
+
+    /// Coordinates (a, b) of a point in the plane.
+    fn coordinates(&self, position: DVec3) -> (f64, f64) {
+        let local = position - self.origin;
+        (local.dot(self.dual_u), local.dot(self.dual_v))
+    }
+
+    /// The interpolated normal of the corners; `None` if they have none, or it is not in front of
+    /// the plane.
+    #[inline]
+    pub(super) fn shading_normal(&self, position: DVec3) -> Option<DVec3> {
+        let [n0, n1, n2] = self.vertices.as_ref()?.normals?;
+        let (a, b) = self.coordinates(position);
+        let normal = ((1.0 - a - b) * n0 + a * n1 + b * n2).try_normalize()?;
+        (normal.dot(self.normal) > 0.0).then_some(normal)
+    }
+
+    /// Interpolated texture coordinates of the corners, if they have any.
+    pub fn vertex_uv(&self, position: DVec3) -> Option<DVec2> {
+        let [t0, t1, t2] = self.vertices.as_ref()?.uv?;
+        let (a, b) = self.coordinates(position);
+        Some((1.0 - a - b) * t0 + a * t1 + b * t2)
     }
 
     /// The corners in order, if it is a parallelogram.

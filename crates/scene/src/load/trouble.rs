@@ -111,6 +111,10 @@ impl serde::de::Error for Trouble {
                  `\"material\": \"none\"` for a perfect mirror and `specular_reflectance` for its \
                  reflectance",
             ),
+            "distribution" => trouble.hint(
+                "Mitsuba's default is `beckmann`, which is not supported; write \
+                 `\"distribution\": \"ggx\"`",
+            ),
             "fov" => trouble.hint("write the field of view in degrees, for example `\"fov\": 40`"),
             "id" => trouble.hint("a reference names the object it means: `\"id\": \"...\"`"),
             _ => trouble,

@@ -47,6 +47,10 @@ fn unknown_variant(word: &str, enum_name: &str, variants: &[&str]) -> Trouble {
         return Trouble::new(format!("the metal `{shown}` is not supported, only `none` is"))
             .hint("`\"material\": \"none\"` with `specular_reflectance` gives a coloured mirror");
     }
+    if enum_name == "Distribution" {
+        return Trouble::new(format!("the distribution `{shown}` is not supported, only `ggx` is"))
+            .hint("`ggx` of the same `alpha` has longer tails than `beckmann`");
+    }
     let kind = Kind::of_enum(enum_name);
     if (kind.is_some() || enum_name == "ColourType")
         && let Some(trouble) = refused(word)

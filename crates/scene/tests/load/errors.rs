@@ -58,7 +58,7 @@ fn words() {
         ("misspelt type", cornell("\"type\": \"homogeneous\"", "\"type\": \"homogenous\"")),
         ("missing type", cornell("\"type\": \"homogeneous\",", "")),
         ("missing type inside", cornell("{\"type\": \"hg\", \"g\": 0.0}", "{\"g\": 0.0}")),
-        ("plugin of Mitsuba", cornell("{\"type\": \"null\"}", "{\"type\": \"roughconductor\"}")),
+        ("plugin of Mitsuba", cornell("{\"type\": \"null\"}", "{\"type\": \"roughplastic\"}")),
         ("texture", cornell("\"reflectance\": 0.75", "\"reflectance\": {\"type\": \"bitmap\"}")),
         ("filter", cornell("{\"type\": \"box\"}", "{\"type\": \"gaussian\"}")),
         ("metal", scene_with("s", "{\"type\": \"conductor\", \"material\": \"Cu\"}")),

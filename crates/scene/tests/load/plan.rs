@@ -87,6 +87,26 @@ fn light_that_a_method_loses_is_marked() {
 }
 
 #[test]
+fn rough_surfaces_are_connected_to_and_keep_no_photons() {
+    let rough = r#"white={"type": "roughconductor", "distribution": "ggx", "material": "none",
+        "specular_reflectance": 0.9}"#;
+    let scene = cornell(&[rough, LASER]);
+    let plan = plan(&scene, 9);
+    assert!(plan.rough.contains(&"floor".to_owned()), "{plan}");
+    assert!(plan.next_event_estimation && plan.eye_connections);
+    let lost = |method| lines(&plan.clone().of_method(method).left_out);
+    assert!(lost(MethodName::Beams).contains("rough surfaces to: beam"), "{plan}");
+    assert!(!lost(MethodName::Light).contains("rough"), "{plan}");
+    assert!(endless_rough("1").len() > 1 && endless_rough("0.99").is_empty());
+}
+
+fn endless_rough(reflectance: &str) -> Vec<String> {
+    let rough = r#"white={"type": "roughconductor", "distribution": "ggx", "material": "none"}"#;
+    let change = format!("white.specular_reflectance={reflectance}");
+    plan(&cornell(&[rough, &change]), 9).endless
+}
+
+#[test]
 fn the_reason_of_the_kernel_is_true_for_a_laser() {
     let reason = |scene: &Scene| lines(&plan(scene, 9).needs);
     assert!(reason(&cornell(&[])).contains("1D kernel: spread directions"));

@@ -3,6 +3,7 @@
 use std::fs;
 
 use glam::DVec3;
+use tpb_optics::microfacet::Metal;
 use tpb_optics::{Phase, Rgb};
 use tpb_scene::description::{schema, schema_text};
 use tpb_scene::load::{Override, load_scene};
@@ -95,6 +96,57 @@ fn defaults_are_mitsubas() {
     let Ok(loaded) = parse(&text) else { panic!("it loads") };
     assert_eq!((loaded.scene.film.width, loaded.scene.film.height), (768, 576));
     assert_eq!(loaded.scene.film.time, None);
+}
+
+#[test]
+fn rough_surfaces_are_what_their_words_say() {
+    let bsdf = |text: &str| {
+        let value = format!(r#"{{"type": "sphere", "bsdf": {text}}}"#);
+        scene("s", &value).shapes[0].bsdf
+    };
+    let metal = bsdf(
+        r#"{"type": "roughconductor", "distribution": "ggx", "alpha_u": 0.3, "alpha_v": 0.3,
+            "eta": [0.2, 0.9, 1.1], "k": 3, "specular_reflectance": 0.5}"#,
+    );
+    let Bsdf::Opaque { front: Reflector::Rough(metal), back: Reflector::Black } = metal else {
+        panic!("a rough metal")
+    };
+    assert_eq!((metal.surface.ggx.alpha(), metal.reflectance), (0.3, Rgb::splat(0.5)));
+    let Metal::Index { eta, k } = metal.surface.metal else { panic!("an index") };
+    assert_eq!((eta, k), (tpb_optics::Spectrum([0.2, 0.9, 1.1]), Rgb::splat(3.0)));
+    let perfect = r#"{"type": "roughconductor", "distribution": "ggx", "material": "none"}"#;
+    let Bsdf::Opaque { front: Reflector::Rough(metal), .. } = bsdf(perfect) else {
+        panic!("a rough metal")
+    };
+    assert_eq!((metal.surface.ggx.alpha(), metal.surface.metal), (0.1, Metal::Perfect));
+    let both = format!(r#"{{"type": "twosided", "bsdf": {perfect}}}"#);
+    let Bsdf::Opaque { back: Reflector::Rough(_), .. } = bsdf(&both) else { panic!("both sides") };
+    let glass = bsdf(
+        r#"{"type": "roughdielectric", "distribution": "ggx", "alpha": 0.2, "int_ior": 1.5,
+            "ext_ior": "water"}"#,
+    );
+    let Bsdf::RoughDielectric(glass, ggx) = glass else { panic!("rough glass") };
+    assert_eq!((glass.interior_eta, glass.exterior_eta, ggx.alpha()), (1.5, 1.333, 0.2));
+    for (text, part) in [
+        (r#""roughconductor", "material": "none""#, "`distribution` is missing"),
+        (r#""roughconductor", "distribution": "beckmann""#, "`beckmann` is not supported"),
+        (r#""roughconductor", "distribution": "ggx""#, "what is this metal made of?"),
+        (r#""roughconductor", "distribution": "ggx", "eta": 1"#, "what is this metal made of?"),
+        (r#""roughdielectric", "distribution": "ggx", "alpha": 0"#, "a roughness from 1e-4 to 1"),
+        (
+            r#""roughdielectric", "distribution": "ggx", "alpha_u": 0.1, "alpha_v": 0.2"#,
+            "`alpha_u` and `alpha_v` differ",
+        ),
+        (r#""roughdielectric", "distribution": "ggx", "alpha_u": 0.1"#, "the roughness is"),
+        (
+            r#""roughdielectric", "distribution": "ggx", "int_ior": 1.5, "ext_ior": 1.5"#,
+            "two refractive indices that differ",
+        ),
+        (r#""conductor", "material": "none", "alpha": 0.1"#, "have a roughness"),
+    ] {
+        let error = error_of(&scene_with("s", &format!(r#"{{"type": {text}}}"#))).to_string();
+        assert!(error.contains(part), "{text}: {error}");
+    }
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! Photons in closed balls, where what visitors must see is known.
 
 use glam::{DAffine3, DVec3};
-use tpb_optics::{Coefficients, Phase, Spectrum};
+use tpb_optics::{Coefficients, Phase, Rgb, Spectrum};
 use tpb_scene::geometry::Sphere;
 use tpb_scene::{
-    EmitterKind, EmitterPart, FilmSpec, FovAxis, Medium, MediumId, PixelFormat, Primitive,
-    SceneParts, Sensor, ShapePart,
+    Bsdf, EmitterKind, EmitterPart, FilmSpec, FovAxis, Medium, MediumId, PixelFormat, Primitive,
+    Reflector, SceneParts, Sensor, ShapePart,
 };
 
 use super::*;
@@ -70,7 +70,7 @@ impl<const C: usize> PhotonVisitor<C> for Seen {
 
     fn surface(&mut self, photon: &Photon<C>, arrival: &SurfaceArrival, _: &mut Stream) {
         assert!((photon.vertex.position.length() - RADIUS).abs() < 1e-12);
-        assert!(arrival.normal.dot(photon.direction) < 0.0);
+        assert!(arrival.lobe.normal.dot(photon.direction) < 0.0);
         self.arrivals.push((photon.events, photon.opl, photon.power[0]));
     }
 }

@@ -117,7 +117,31 @@ pub(super) fn test(
     sample: impl Fn(&mut Stream) -> [f64; 2] + Sync,
     density: impl Fn(f64, f64) -> f64 + Sync,
 ) -> Tested {
-    let name = name.into();
+    compare(name.into(), grid, (samples, seed), |rng| Some(sample(rng)), density, |_| 0.0)
+}
+
+/// The same where some samples are none, or belong elsewhere: the density falls short of 1 by
+/// their share.
+pub(super) fn test_part(
+    name: impl Into<String>,
+    grid: Grid,
+    samples: u64,
+    seed: Draws,
+    sample: impl Fn(&mut Stream) -> Option<[f64; 2]> + Sync,
+    density: impl Fn(f64, f64) -> f64 + Sync,
+) -> Tested {
+    compare(name.into(), grid, (samples, seed), sample, density, |within| 1.0 - within)
+}
+
+/// Counts against probabilities; `beside` makes the probability of no cell from that of all cells.
+fn compare(
+    name: String,
+    grid: Grid,
+    (samples, seed): (u64, Draws),
+    sample: impl Fn(&mut Stream) -> Option<[f64; 2]> + Sync,
+    density: impl Fn(f64, f64) -> f64 + Sync,
+    beside: impl Fn(f64) -> f64,
+) -> Tested {
     // Each test has random numbers of its own.
     let item = name
         .bytes()
@@ -130,8 +154,8 @@ pub(super) fn test(
             // One cell more for what falls outside.
             let mut counts = vec![0_u64; cells + 1];
             for _ in 0..samples / STREAMS {
-                let point = grid.warped(sample(&mut rng), seed.exponent);
-                counts[grid.cell(point).unwrap_or(cells)] += 1;
+                let point = sample(&mut rng).map(|point| grid.warped(point, seed.exponent));
+                counts[point.and_then(|point| grid.cell(point)).unwrap_or(cells)] += 1;
             }
             counts
         })
@@ -143,7 +167,7 @@ pub(super) fn test(
             integrate(&density, x, y, DEPTH)
         })
         .collect();
-    probabilities.push(0.0);
+    probabilities.push(beside(probabilities.iter().sum()));
     Tested::discrete(name, &counts, &probabilities)
 }
 

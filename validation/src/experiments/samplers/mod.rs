@@ -6,6 +6,7 @@
 mod distances;
 mod emission;
 mod histogram;
+mod microfacet;
 mod phase;
 mod surfaces;
 mod warps;
@@ -41,6 +42,8 @@ pub enum Samplers {
     Surfaces,
     /// Photons of every kind of emitter.
     Emission,
+    /// Normals of microfacets, and directions from rough surfaces.
+    Microfacet,
 }
 
 /// Each group.
@@ -50,8 +53,14 @@ pub fn all() -> Experiments {
 
 impl Samplers {
     /// All groups.
-    pub const ALL: [Self; 5] =
-        [Self::Phase, Self::Warps, Self::Distances, Self::Surfaces, Self::Emission];
+    pub const ALL: [Self; 6] = [
+        Self::Phase,
+        Self::Warps,
+        Self::Distances,
+        Self::Surfaces,
+        Self::Emission,
+        Self::Microfacet,
+    ];
 
     fn tests(self, samples: u64, seed: Draws) -> Result<Vec<Tested>> {
         Ok(match self {
@@ -60,6 +69,7 @@ impl Samplers {
             Self::Distances => distances::tests(samples, seed),
             Self::Surfaces => surfaces::tests(samples, seed),
             Self::Emission => emission::tests(samples, seed)?,
+            Self::Microfacet => microfacet::tests(samples, seed),
         })
     }
 
@@ -70,6 +80,7 @@ impl Samplers {
             Self::Distances => "distances",
             Self::Surfaces => "surfaces",
             Self::Emission => "emission",
+            Self::Microfacet => "microfacet",
         }
     }
 }
@@ -86,6 +97,7 @@ impl Experiment for Samplers {
             Self::Distances => "free flights, channel choice, equiangular distances",
             Self::Surfaces => "points on every primitive",
             Self::Emission => "positions, directions and weights of every emitter",
+            Self::Microfacet => "visible normals, directions from rough metal and glass",
         };
         format!("{what}: chi-square against the density")
     }

@@ -3,8 +3,10 @@
 mod ball;
 mod floor;
 mod fog;
+mod interface;
 mod lamp;
 mod room;
+mod rough;
 
 use std::sync::Arc;
 
@@ -97,5 +99,7 @@ pub fn all() -> Vec<Arc<dyn Case>> {
         Arc::new(fog::Fog),
         Arc::new(ball::Ball),
         Arc::new(room::Room),
+        Arc::new(interface::Interface),
+        Arc::new(rough::Rough),
     ]
 }

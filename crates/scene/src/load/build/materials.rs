@@ -2,7 +2,7 @@
 
 use tpb_optics::{Coefficients, Phase, Rgb};
 
-use super::Builder;
+use super::{Builder, rough};
 use crate::description::{self as words, Homogeneous, Kind, Reference};
 use crate::load::dictionary::Object;
 use crate::load::tree::Node;
@@ -38,6 +38,10 @@ impl<'a> Builder<'a> {
                 reflectance: d.specular_reflectance.rgb(),
                 transmittance: d.specular_transmittance.rgb(),
             })),
+            words::Bsdf::Roughconductor(c) => {
+                Surface::Reflects(Reflector::Rough(rough::metal(c, node)?))
+            }
+            words::Bsdf::Roughdielectric(d) => Surface::Passes(rough::glass(d, node)?),
             words::Bsdf::Null(_) => Surface::Passes(Bsdf::Null),
             words::Bsdf::Twosided(sides) => {
                 let front = self.side(&sides.bsdf, node.get_or_self("bsdf"), way)?;
@@ -78,9 +82,10 @@ impl<'a> Builder<'a> {
         match self.surface(bsdf, node, way)? {
             Surface::Reflects(reflector) => Ok(reflector),
             Surface::Passes(_) | Surface::Twosided(_) => {
-                Err(Trouble::new("`twosided` can hold only `diffuse` and `conductor`")
+                let opaque = "`diffuse`, `conductor` and `roughconductor`";
+                Err(Trouble::new(format!("`twosided` can hold only {opaque}"))
                     .at(node)
-                    .hint("`null` and `dielectric` act on both sides without it"))
+                    .hint("all others act on both sides without it"))
             }
         }
     }

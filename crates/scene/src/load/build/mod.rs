@@ -7,6 +7,7 @@
 mod camera;
 mod lamps;
 mod materials;
+mod rough;
 mod shapes;
 
 use std::collections::BTreeMap;

@@ -1,32 +1,33 @@
-//! A smooth dielectric boundary, from the light's side or the camera's: one choice between
-//! reflection and refraction, with the probability of the Fresnel reflectance, so that the carrier
-//! is unchanged but for the material's own factors.
-//!
-//! *Radiance* changes by (η before/η behind)² where the camera's ray crosses, because L/η² is what
-//! refraction conserves; fluxes and importance do not change.
+//! A smooth dielectric boundary: one choice between reflection and refraction, with the probability
+//! of the Fresnel reflectance, so that the carrier is unchanged but for the material's own factors.
 
 use glam::DVec3;
 use tpb_optics::{Rgb, Stream, fresnel};
-use tpb_scene::{Dielectric, Hit, Region, Scene};
+use tpb_scene::Dielectric;
 
 /// The way taken at a boundary.
 #[derive(Clone, Copy, Debug)]
-pub struct Crossing {
+pub(super) struct Crossing {
     /// New unit direction of propagation.
-    pub direction: DVec3,
+    pub(super) direction: DVec3,
     /// The material's own factor (1 for real glass); the Fresnel factor is the probability.
-    pub factor: Rgb,
+    pub(super) factor: Rgb,
     /// Refractive index before the boundary over that behind it; 1 after a reflection.
-    pub eta_ratio: f64,
+    pub(super) eta_ratio: f64,
     /// Whether the boundary was crossed.
-    transmitted: bool,
+    pub(super) transmitted: bool,
 }
 
 impl Crossing {
     /// Draws reflection or refraction for a ray along `direction`; `normal` is the shape's. Total
     /// internal reflection draws no random number.
     #[inline]
-    pub fn choose(glass: &Dielectric, direction: DVec3, normal: DVec3, rng: &mut Stream) -> Self {
+    pub(super) fn choose(
+        glass: &Dielectric,
+        direction: DVec3,
+        normal: DVec3,
+        rng: &mut Stream,
+    ) -> Self {
         let cosine = -direction.dot(normal);
         let (from, to, facing) = if cosine > 0.0 {
             (glass.exterior_eta, glass.interior_eta, normal)
@@ -42,16 +43,6 @@ impl Crossing {
         let eta_ratio = from / to;
         let direction = fresnel::refract(direction, facing, eta_ratio, f.cos_transmitted);
         Self { direction, factor: glass.transmittance, eta_ratio, transmitted: true }
-    }
-
-    /// The region that the way leads into, from `before` at `hit`.
-    #[inline]
-    pub fn region(&self, scene: &Scene, hit: &Hit, before: Region) -> Region {
-        if !self.transmitted {
-            return before;
-        }
-        let to_front = self.direction.dot(hit.normal) > 0.0;
-        scene.region_beyond(scene.shape(hit.primitive), to_front, before)
     }
 }
 

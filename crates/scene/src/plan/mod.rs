@@ -4,15 +4,14 @@
 //! The plan is computed once, printed by `tpb plan`, and written into every report. Integrators
 //! read its switches; they do not look at the scene again to decide what to do.
 
+mod look;
+
 use std::fmt;
 
 use serde::Serialize;
-use tpb_optics::{Coefficients, Rgb};
 
-use crate::{
-    Bsdf, EmitterKind, IntegratorSpec, MethodName, PixelFormat, Reflector, Region, Scene, Shape,
-    TimeSpec,
-};
+use self::look::{emitters, endless, has_lamps, is_chromatic, kernel, media};
+use crate::{Bsdf, EmitterKind, IntegratorSpec, MethodName, PixelFormat, Scene, TimeSpec};
 
 /// What a render of a scene needs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -26,6 +25,8 @@ pub struct Plan {
     pub refracting: Vec<String>,
     /// Shapes that reflect as mirrors.
     pub mirrors: Vec<String>,
+    /// Shapes of rough metal or rough glass.
+    pub rough: Vec<String>,
     /// Shapes that scatter diffusely.
     pub diffuse: Vec<String>,
     /// Emitters that a camera's path cannot connect to.
@@ -119,6 +120,7 @@ impl Plan {
             media: media(scene),
             refracting: named(&|b| matches!(b, Bsdf::Dielectric(_))),
             mirrors: named(&Bsdf::is_mirror),
+            rough: named(&Bsdf::is_rough),
             diffuse: named(&Bsdf::scatters_diffusely),
             unconnectable: emitters(scene, |kind| !kind.can_be_connected()),
             endless: endless(scene),
@@ -221,6 +223,10 @@ impl Plan {
                 Ok(format!("shapes: {specular}"))
             },
         );
+        if !self.rough.is_empty() {
+            let shapes = format!("shapes: {}", self.rough.join(", "));
+            self.note(ALL, "rough reflection and refraction", Ok(shapes));
+        }
         // Next-event estimation owns direct light, except a laser's.
         let least_depth = if self.unconnectable.is_empty() { 3 } else { 2 };
         let decision = if self.diffuse.is_empty() {
@@ -238,7 +244,7 @@ impl Plan {
     /// Beams connect at surfaces only, the path tracer in media too.
     fn decide_connections(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
         let part = "next-event estimation";
-        let (surfaces, media) = (!self.diffuse.is_empty(), self.media == Media::Scattering);
+        let (surfaces, media) = (self.surfaces_spread(), self.media == Media::Scattering);
         let decision = if emitters(scene, EmitterKind::can_be_connected).is_empty() {
             Err("no emitter that a path can connect to")
         } else if !integrator.reaches(2) {
@@ -259,7 +265,7 @@ impl Plan {
 
     /// What the light tracer does.
     fn decide_eye_connections(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
-        let (surfaces, media) = (!self.diffuse.is_empty(), self.media == Media::Scattering);
+        let (surfaces, media) = (self.surfaces_spread(), self.media == Media::Scattering);
         let lamps = integrator.min_depth <= 1 && has_lamps(scene);
         let decision = if scene.power().is_zero() {
             Err("the scene has no light")
@@ -281,7 +287,7 @@ impl Plan {
 
     /// Light that a path from the camera cannot find.
     fn tell_lost_light(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
-        let seen = !self.diffuse.is_empty() || self.media == Media::Scattering;
+        let seen = self.surfaces_spread() || self.media == Media::Scattering;
         if seen && integrator.reaches(2) && !self.unconnectable.is_empty() {
             let names = self.unconnectable.join(", ");
             let reason = format!("no path can connect to: {names}; photon beams render it");
@@ -297,6 +303,38 @@ impl Plan {
             let reason = format!("{reason}; photon beams render it");
             self.lose(PATH, "caustics of points and spots", &reason);
         }
+        self.tell_light_lost_on_rough(integrator, &points, specular);
+    }
+
+    /// Beams find the light of a rough surface from the camera alone: by connections and by chance.
+    fn tell_light_lost_on_rough(
+        &mut self,
+        integrator: &IntegratorSpec,
+        points: &[String],
+        specular: bool,
+    ) {
+        if self.rough.is_empty() {
+            return;
+        }
+        if integrator.reaches(2) && !self.unconnectable.is_empty() {
+            let names = self.unconnectable.join(", ");
+            let reason = format!("nothing connects rough surfaces to: {names}");
+            let reason = format!("{reason}; the light tracer renders it");
+            self.lose(BEAMS, "light of lasers on rough surfaces", &reason);
+        }
+        if integrator.reaches(3) && specular && !points.is_empty() {
+            let reason = format!(
+                "no path can hit a point by a mirror or through glass: {}",
+                points.join(", ")
+            );
+            let reason = format!("{reason}; the light tracer renders it");
+            self.lose(BEAMS, "caustics on rough surfaces", &reason);
+        }
+    }
+
+    /// Whether surfaces spread light into many directions.
+    fn surfaces_spread(&self) -> bool {
+        !(self.diffuse.is_empty() && self.rough.is_empty())
     }
 
     /// Light that the light tracer cannot find: nothing connects across mirrors and smooth glass.
@@ -304,7 +342,7 @@ impl Plan {
         let specular = [&self.refracting[..], &self.mirrors].concat().join(", ");
         // Seen in a mirror, a lamp has depth 2, what another emitter lights 3.
         let least_depth = if has_lamps(scene) { 2 } else { 3 };
-        let seen = has_lamps(scene) || !self.diffuse.is_empty() || self.media == Media::Scattering;
+        let seen = has_lamps(scene) || self.surfaces_spread() || self.media == Media::Scattering;
         let light = !scene.power().is_zero();
         if seen && light && !specular.is_empty() && integrator.reaches(least_depth) {
             let part = "light in mirrors and glass";
@@ -357,95 +395,4 @@ impl fmt::Display for Plan {
         }
         Ok(())
     }
-}
-
-fn media(scene: &Scene) -> Media {
-    let scatters = scene.media.iter().any(|m| m.coefficients.scatters());
-    let takes = scene.media.iter().any(|m| !m.coefficients.sigma_t.is_zero());
-    match (scatters, takes) {
-        (true, _) => Media::Scattering,
-        (false, true) => Media::Absorbing,
-        (false, false) => Media::None,
-    }
-}
-
-fn is_chromatic(scene: &Scene) -> bool {
-    let media = scene.media.iter().flat_map(|m| [m.coefficients.sigma_s, m.coefficients.sigma_t]);
-    let surfaces = scene.shapes.iter().flat_map(|s| s.bsdf.factors());
-    let emitters = scene.emitters.iter().map(|e| e.kind.color());
-    media.chain(surfaces).chain(emitters).any(|c| !Rgb::is_achromatic(c))
-}
-
-/// Whether an emitter of some area gives light.
-fn has_lamps(scene: &Scene) -> bool {
-    !emitters(scene, |kind| matches!(kind, EmitterKind::Area { .. })).is_empty()
-}
-
-/// Names of the emitters of some kind that give light.
-fn emitters(scene: &Scene, wanted: impl Fn(&EmitterKind) -> bool) -> Vec<String> {
-    let found = scene.emitters.iter().filter(|e| wanted(&e.kind) && !e.kind.power().is_zero());
-    found.map(|e| e.name.clone()).collect()
-}
-
-/// Reflectances and albedos that take nothing from some channel, and light that starts within the
-/// denser side of glass: what is reflected there totally, may be so for ever. (Light that enters
-/// from outside leaves again, for almost all its directions: flight between reflections keeps the
-/// measure of places and directions, so that what came in by a way gets back to it.)
-fn endless(scene: &Scene) -> Vec<String> {
-    let mut reasons = Vec::new();
-    for shape in &scene.shapes {
-        let Bsdf::Opaque { front, back } = shape.bsdf else { continue };
-        let full = [front, back].iter().any(|side| match side {
-            Reflector::Black => false,
-            Reflector::Diffuse(rho) | Reflector::Mirror(rho) => rho.max_channel() >= 1.0,
-        });
-        if full {
-            reasons.push(format!("shape '{}' reflects all light of a channel", shape.name));
-        }
-    }
-    for medium in &scene.media {
-        let Coefficients { sigma_s, sigma_t } = medium.coefficients;
-        if (0..3).any(|c| sigma_t[c] > 0.0 && sigma_s[c] >= sigma_t[c]) {
-            reasons
-                .push(format!("medium '{}' absorbs nothing of a channel (albedo 1)", medium.name));
-        }
-    }
-    reasons.extend(scene.shapes.iter().filter_map(|shape| trap(scene, shape)));
-    reasons
-}
-
-/// Whether the camera or an emitter stands where this shape is the way out of something denser that
-/// takes nothing of some channel.
-fn trap(scene: &Scene, shape: &Shape) -> Option<String> {
-    let Bsdf::Dielectric(glass) = shape.bsdf else { return None };
-    if glass.interior_eta == glass.exterior_eta || glass.reflectance.max_channel() < 1.0 {
-        return None;
-    }
-    let denser = glass.interior_eta.max(glass.exterior_eta);
-    let takes = |region: Region| {
-        let medium = region.medium.map(|id| scene.medium(id).coefficients);
-        medium.is_some_and(|c| (0..3).all(|i| c.sigma_t[i] > c.sigma_s[i]))
-    };
-    let inside = |region: Region| region.eta == denser && !takes(region);
-    let lamps = scene.emitters.iter().filter(|e| !e.kind.power().is_zero());
-    let lamp = lamps.into_iter().find(|e| inside(e.region)).map(|e| format!("'{}'", e.name));
-    let who = lamp.or_else(|| inside(scene.sensor.region).then(|| "the camera".to_owned()))?;
-    let name = &shape.name;
-    Some(format!("shape '{name}' may totally reflect light for ever: {who} is on its denser side"))
-}
-
-/// A laser whose axis the camera looks along (either way) needs the 2D kernel.
-fn kernel(scene: &Scene) -> Kernel {
-    let (w, h) = (scene.film.width as f64, scene.film.height as f64);
-    let forward = scene.sensor.forward();
-    // The cone around the view axis through the film's corners.
-    let cos_corner = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)]
-        .map(|(x, y)| scene.sensor.direction(x, y).dot(forward))
-        .into_iter()
-        .fold(1.0, f64::min);
-    let along_view = scene.emitters.iter().any(|e| match e.kind {
-        EmitterKind::Laser { axis, .. } => axis.dot(forward).abs() >= cos_corner,
-        _ => false,
-    });
-    if along_view { Kernel::TwoD } else { Kernel::OneD }
 }
