@@ -132,15 +132,19 @@ shape! {
 }
 
 shape! {
-    /// `obj` and `ply`: triangles from a file. Polygons are cut into fans; shading is flat, with
-    /// the normals of the faces, and texture coordinates are not read.
+    /// `obj` and `ply`: triangles from a file, with normals and texture coordinates. Polygons are
+    /// cut into fans. The faces' right-hand rule says which side is the front.
     Mesh {
         /// Path of the mesh file, relative to the scene file.
         pub filename: String,
-        /// Whether the normals of the faces are used instead of those of the vertices. This
-        /// version always does so.
+        /// Whether the normals of the faces are used for shading instead of those of the vertices,
+        /// which are computed where the file has none.
         #[serde(default)]
         pub face_normals: bool,
+        /// Whether the second texture coordinate counts from the other end; unless given it does in
+        /// `obj` files, but not in `ply` files.
+        #[serde(default)]
+        pub flip_tex_coords: Option<bool>,
     }
 }
 

@@ -114,18 +114,24 @@ impl<'a> Builder<'a> {
             let name = names::shortened(&file.filename);
             Trouble::new(format!("cannot use the mesh file `{name}`: {problem}")).at(place)
         };
+        let reading = mesh::Reading {
+            to_world,
+            flip: file.flip_normals,
+            face_normals: file.face_normals,
+            flip_uv: file.flip_tex_coords.unwrap_or(format == mesh::Format::Obj),
+        };
         let triangles =
-            mesh::load(&path, format, to_world).map_err(|problem| {
+            mesh::load(&path, format, &reading).map_err(|problem| {
                 fail(problem).maybe_hint((!path.exists()).then(|| {
                     format!("mesh files are looked for in `{}`", self.directory.display())
                 }))
             })?;
-        // A mirrored mesh keeps its normals on the same side of its surface.
-        let turn = file.flip_normals != is_mirrored(to_world);
-        let primitive = |[a, b, c]: [DVec3; 3]| {
-            let (u, v) = if turn { (c - a, b - a) } else { (b - a, c - a) };
+        let primitive = |triangle: mesh::Triangle| {
+            let [a, b, c] = triangle.corners;
+            let (u, v) = (b - a, c - a);
             within_limits(&[a, b, c], &[u.length().max(v.length())], place)?;
-            Ok(Primitive::Planar(Planar::new(a, u, v, Outline::Triangle)))
+            let plane = Planar::new(a, u, v, Outline::Triangle).with_vertices(triangle.vertices);
+            Ok(Primitive::Planar(plane))
         };
         triangles.into_iter().map(primitive).collect()
     }

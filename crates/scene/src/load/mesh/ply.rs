@@ -1,21 +1,24 @@
-//! PLY, as text or binary: the elements `vertex` (x, y, z) and `face` (vertex_indices).
+//! PLY, as text or binary: the elements `vertex` (x, y, z; normals nx, ny, nz; texture coordinates
+//! u, v or s, t) and `face` (vertex_indices).
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult, PropertyType};
 
-use super::Polygons;
+use super::{Corner, Polygons};
 
 /// One element of the file: whatever of a vertex or of a face it has.
 #[derive(Debug)]
 struct Element {
     position: DVec3,
+    normal: DVec3,
+    uv: DVec2,
     indices: Vec<i64>,
 }
 
 impl PropertyAccess for Element {
     fn new() -> Self {
-        Self { position: DVec3::NAN, indices: Vec::new() }
+        Self { position: DVec3::NAN, normal: DVec3::NAN, uv: DVec2::NAN, indices: Vec::new() }
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
@@ -23,6 +26,11 @@ impl PropertyAccess for Element {
             "x" => self.position.x = number(&property),
             "y" => self.position.y = number(&property),
             "z" => self.position.z = number(&property),
+            "nx" => self.normal.x = number(&property),
+            "ny" => self.normal.y = number(&property),
+            "nz" => self.normal.z = number(&property),
+            "u" | "s" => self.uv.x = number(&property),
+            "v" | "t" => self.uv.y = number(&property),
             "vertex_indices" | "vertex_index" => self.indices = whole_numbers(property),
             _ => return PropertyAccessResult::Ignored,
         }
@@ -74,8 +82,17 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Polygons, String> {
         let elements = parser
             .read_payload_for_element(&mut reader, element, &header)
             .map_err(|error| brief(&error))?;
+        let has = |names: &[&str]| names.iter().all(|name| element.properties.contains_key(*name));
         match name.as_str() {
-            "vertex" => mesh.vertices = elements.iter().map(|vertex| vertex.position).collect(),
+            "vertex" => {
+                mesh.vertices = elements.iter().map(|vertex| vertex.position).collect();
+                if has(&["nx", "ny", "nz"]) {
+                    mesh.normals = elements.iter().map(|vertex| vertex.normal).collect();
+                }
+                if has(&["u", "v"]) || has(&["s", "t"]) {
+                    mesh.uvs = elements.iter().map(|vertex| vertex.uv).collect();
+                }
+            }
             "face" => elements.iter().for_each(|face| push(face, &mut mesh)),
             _ => {}
         }
@@ -102,7 +119,13 @@ fn require_properties<'a>(
 
 fn push(face: &Element, mesh: &mut Polygons) {
     // A negative index is as wrong as one that is too large, and is reported like it.
-    let corners = face.indices.iter().map(|&index| usize::try_from(index).unwrap_or(usize::MAX));
+    let corner = |&index: &i64| {
+        let vertex = usize::try_from(index).unwrap_or(usize::MAX);
+        let of = |there: bool| there.then_some(vertex);
+        let (normal, uv) = (of(!mesh.normals.is_empty()), of(!mesh.uvs.is_empty()));
+        Corner { vertex, normal, uv }
+    };
+    let corners: Vec<_> = face.indices.iter().map(corner).collect();
     mesh.corners.extend(corners);
     mesh.faces.push((face.indices.len(), None));
 }
@@ -118,13 +141,29 @@ mod tests {
     use glam::DAffine3;
 
     use super::*;
+    use crate::load::mesh::Reading;
 
     const HEADER: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n\
         property float y\nproperty double z\nelement face 1\n\
         property list uchar int vertex_indices\nend_header\n";
 
     fn triangles(bytes: &[u8]) -> Result<Vec<[DVec3; 3]>, String> {
-        parse(bytes)?.triangles(&DAffine3::IDENTITY)
+        let to_world = &DAffine3::IDENTITY;
+        let reading = Reading { to_world, flip: false, face_normals: false, flip_uv: false };
+        let triangles = parse(bytes)?.triangles(&reading)?;
+        Ok(triangles.iter().map(|triangle| triangle.corners).collect())
+    }
+
+    #[test]
+    fn normals_and_texture_coordinates_are_read() {
+        let more = "property float nx\nproperty float ny\nproperty float nz\nproperty float s\n\
+            property float t\nelement face";
+        let header = HEADER.replace("element face", more).replace("vertex 4", "vertex 3");
+        let vertices = "0 0 0 0 0 1 0 0\n1 0 0 0.6 0 0.8 1 0\n1 1 0 0 0 1 1 0.5\n";
+        let mesh = parse(format!("{header}{vertices}3 0 1 2\n").as_bytes()).expect("valid");
+        assert!((mesh.normals[1] - DVec3::new(0.6, 0.0, 0.8)).length() < 1e-7);
+        assert_eq!(mesh.uvs[2], DVec2::new(1.0, 0.5));
+        assert!(mesh.corners.iter().all(|c| c.normal == Some(c.vertex) && c.uv == c.normal));
     }
 
     #[test]
