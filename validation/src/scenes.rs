@@ -46,6 +46,7 @@ impl View {
         SceneParts {
             shapes: vec![],
             media: vec![],
+            textures: vec![],
             emitters: vec![],
             background: None,
             sensor: Sensor::perspective(to_world, self.fov, FovAxis::X, self.pixels, self.pixels),

@@ -9,7 +9,7 @@ use crate::probe::Probe;
 use crate::world::Choice;
 use crate::{
     Bsdf, Emitter, EmitterKind, FilmSpec, IntegratorSpec, Medium, MediumBoundary, MediumId,
-    Primitive, Region, Scene, Sensor, Shape,
+    Primitive, Region, Scene, Sensor, Shape, Texture,
 };
 
 /// A shape as the loader hands it over.
@@ -45,6 +45,8 @@ pub struct SceneParts {
     pub shapes: Vec<ShapePart>,
     /// Media; [`MediumId`] is the index.
     pub media: Vec<Medium>,
+    /// Textures; [`TextureId`](crate::TextureId) is the index.
+    pub textures: Vec<Texture>,
     /// Emitters that are no shapes.
     pub emitters: Vec<EmitterPart>,
     /// The medium beyond all boundaries (extension).
@@ -245,6 +247,7 @@ fn lay_out(parts: SceneParts, media_eta: &[f64]) -> Scene {
         primitives,
         shapes,
         media: parts.media,
+        textures: parts.textures,
         emitters,
         sensor: parts.sensor,
         film: parts.film,

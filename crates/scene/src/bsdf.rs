@@ -6,6 +6,8 @@
 use tpb_optics::Rgb;
 use tpb_optics::microfacet::{Ggx, Metal, RoughConductor};
 
+use crate::texture::{Texture, TextureId};
+
 /// The material of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bsdf {
@@ -44,6 +46,8 @@ pub enum Reflector {
     Black,
     /// Lambertian with this reflectance, 0 to 1: BSDF value reflectance/π.
     Diffuse(Rgb),
+    /// Lambertian with the reflectance of a texture.
+    Textured(TextureId),
     /// A perfect mirror with this reflectance, 0 to 1.
     Mirror(Rgb),
     /// A rough metal.
@@ -60,11 +64,12 @@ pub struct RoughMetal {
 }
 
 impl Reflector {
-    /// No direction's light is reflected by more than this.
-    pub fn most_reflectance(&self) -> Rgb {
+    /// No light is reflected by more than this.
+    pub fn most_reflectance(&self, textures: &[Texture]) -> Rgb {
         match *self {
             Self::Black => Rgb::ZERO,
             Self::Diffuse(rho) | Self::Mirror(rho) => rho,
+            Self::Textured(TextureId(id)) => textures[id as usize].most(),
             // Fresnel's factor at grazing angles is 1.
             Self::Rough(metal) => metal.reflectance,
         }
@@ -104,7 +109,11 @@ impl Bsdf {
 
     /// Whether some side scatters diffusely.
     pub fn scatters_diffusely(&self) -> bool {
-        let diffuse = |r| matches!(r, Reflector::Diffuse(rho) if !Rgb::is_zero(rho));
+        let diffuse = |r| match r {
+            Reflector::Diffuse(rho) => !Rgb::is_zero(rho),
+            Reflector::Textured(_) => true,
+            _ => false,
+        };
         matches!(*self, Self::Opaque { front, back } if diffuse(front) || diffuse(back))
     }
 
@@ -114,14 +123,15 @@ impl Bsdf {
         matches!(*self, Self::Opaque { front, back } if mirror(front) || mirror(back))
     }
 
-    /// Every factor on light that the material applies (for finding colour).
+    /// Every factor on light that the material applies, textures apart (for finding colour).
     pub(crate) fn factors(&self) -> Vec<Rgb> {
         let of = |r: Reflector| match r {
             Reflector::Rough(RoughMetal { surface, reflectance }) => match surface.metal {
                 Metal::Perfect => vec![reflectance],
                 Metal::Index { eta, k } => vec![reflectance, eta, k],
             },
-            other => vec![other.most_reflectance()],
+            Reflector::Diffuse(rho) | Reflector::Mirror(rho) => vec![rho],
+            Reflector::Black | Reflector::Textured(_) => vec![],
         };
         match *self {
             Self::Null => vec![],

@@ -17,6 +17,7 @@ mod medium;
 mod plan;
 mod probe;
 mod sensor;
+pub mod texture;
 mod world;
 
 pub use assemble::{AssembleError, EmitterPart, SceneParts, ShapePart};
@@ -29,4 +30,5 @@ pub use plan::{Item, Kernel, Media, Plan, Transport};
 pub use sensor::{
     FilmPoint, FilmSpec, FovAxis, IntegratorSpec, MethodName, PixelFormat, Sensor, TimeSpec,
 };
+pub use texture::{Texture, TextureId};
 pub use world::{Scene, Shape};

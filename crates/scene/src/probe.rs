@@ -214,7 +214,7 @@ impl<'a> Probe<'a> {
             match shape.bsdf.reflector(front) {
                 None => true,
                 Some(Reflector::Black) => front && shape.emitter.is_some(),
-                Some(reflector) => !reflector.most_reflectance().is_zero(),
+                Some(reflector) => !reflector.most_reflectance(&self.scene.textures).is_zero(),
             }
         })
     }

@@ -8,7 +8,8 @@ use tpb_optics::{Rgb, Spectrum, Stream};
 use crate::emitter::EmittingSurface;
 use crate::{
     Bsdf, Emission, Emitter, EmitterKind, FilmSpec, Flight, Hit, Incident, IntegratorSpec,
-    LightPoint, Medium, MediumBoundary, MediumId, Primitive, Region, Sensor, Span, Vertex,
+    LightPoint, Medium, MediumBoundary, MediumId, Primitive, Region, Sensor, Span, Texture,
+    TextureId, Vertex,
 };
 
 /// Null boundaries that one flight may cross; more means surfaces that coincide without end.
@@ -42,6 +43,8 @@ pub struct Scene {
     pub shapes: Vec<Shape>,
     /// All media.
     pub media: Vec<Medium>,
+    /// All textures, each of one shape.
+    pub textures: Vec<Texture>,
     /// All emitters.
     pub emitters: Vec<Emitter>,
     /// The camera.
@@ -70,6 +73,11 @@ impl Scene {
     #[inline]
     pub fn medium(&self, id: MediumId) -> &Medium {
         &self.media[id.0 as usize]
+    }
+
+    /// The value of a texture at a hit on its shape.
+    pub fn textured(&self, TextureId(id): TextureId, hit: &Hit) -> Rgb {
+        self.textures[id as usize].at(&self.primitives[hit.primitive as usize], hit.position)
     }
 
     /// The box around all surfaces (empty without surfaces).

@@ -45,6 +45,7 @@ fn assemble(eye: DVec3, lamp: DVec3, shapes: Vec<ShapePart>) -> Result<Scene, As
     Scene::assemble(SceneParts {
         shapes,
         media: vec![medium("fog", 0.5), medium("water", 0.25)],
+        textures: vec![],
         emitters: vec![EmitterPart { name: "lamp".into(), kind, stated_medium: None }],
         background: None,
         sensor: Sensor::perspective(DAffine3::from_translation(eye), 40.0, FovAxis::X, 4, 4),

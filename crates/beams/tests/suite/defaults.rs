@@ -57,6 +57,7 @@ fn cube_of_fog(
     Scene::assemble(SceneParts {
         shapes,
         media: vec![scenes::fog(0.8 * sigma_t, sigma_t, 0.0)],
+        textures: vec![],
         emitters: vec![scenes::point(centre + DVec3::splat(0.3 * half), Rgb::ONE)],
         background: None,
         sensor: scenes::camera(eye, centre - DVec3::Y * half - eye, 40.0, (64, 64)),
@@ -122,6 +123,7 @@ fn rays_that_see_nothing_leave_sound_radii() {
             scenes::diffuse(0.5),
         )],
         media: vec![],
+        textures: vec![],
         emitters: vec![scenes::point(DVec3::ZERO, Rgb::ONE)],
         background: None,
         film: scenes::film(8, 8, 0.1, 50),

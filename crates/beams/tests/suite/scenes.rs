@@ -94,6 +94,7 @@ pub(crate) fn infinite(
     SceneParts {
         shapes: vec![],
         media: vec![medium],
+        textures: vec![],
         emitters: vec![emitter],
         background: Some(MediumId(0)),
         sensor,
@@ -140,6 +141,7 @@ pub(crate) fn cornell_blocks(width: usize) -> Scene {
     Scene::assemble(SceneParts {
         shapes,
         media: vec![fog(0.4, 0.5, 0.0)],
+        textures: vec![],
         emitters: vec![],
         background: None,
         sensor: camera(DVec3::new(0.0, 0.0, 3.9), -DVec3::Z, 38.0, (width, width)),

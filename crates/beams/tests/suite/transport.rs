@@ -229,6 +229,7 @@ fn a_closed_diffuse_sphere_glows_with_radiance_one_per_order() {
     let scene = Scene::assemble(SceneParts {
         shapes: vec![scenes::shape("ball", vec![ball], scenes::diffuse(rho))],
         media: vec![],
+        textures: vec![],
         emitters: vec![scenes::point(DVec3::ZERO, intensity)],
         background: None,
         sensor: scenes::camera(DVec3::new(0.3, 0.2, -0.4), DVec3::Z, 80.0, (8, 8)),
@@ -273,6 +274,7 @@ fn a_laser_lights_a_surface_directly() {
     let scene = Scene::assemble(SceneParts {
         shapes: vec![scenes::shape("floor", vec![floor], scenes::diffuse(rho))],
         media: vec![],
+        textures: vec![],
         emitters: vec![EmitterPart { name: "laser".to_owned(), kind, stated_medium: None }],
         background: None,
         sensor: scenes::camera(DVec3::new(0.0, 3.0, 4.0), DVec3::new(0.0, -3.0, -4.0), 1.0, (4, 4)),
@@ -312,6 +314,7 @@ fn radiance_scales_with_eta_squared_in_a_furnace_with_glass() {
         let scene = Scene::assemble(SceneParts {
             shapes: vec![ball.clone(), walls.clone()],
             media: vec![],
+            textures: vec![],
             emitters: vec![],
             background: None,
             sensor: scenes::camera(eye, DVec3::Z, 70.0, (8, 8)),

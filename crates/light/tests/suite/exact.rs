@@ -23,6 +23,7 @@ fn wall(emitter: EmitterKind, medium: Option<Medium>, fov: f64, bins: usize) -> 
         shapes: vec![scenes::shape("wall", vec![plate], scenes::diffuse(RHO))],
         background: medium.is_some().then_some(MediumId(0)),
         media: medium.into_iter().collect(),
+        textures: vec![],
         emitters: vec![EmitterPart { name: "e".into(), kind: emitter, stated_medium: None }],
         sensor: scenes::camera(eye, DVec3::new(0.3, 0.1, -1.0), fov, (6, 4)),
         film: scenes::film(6, 4, 8.0 / bins as f64, bins),
@@ -127,6 +128,7 @@ fn a_lamp_seen_directly_has_its_radiance() {
     let scene = Scene::assemble(SceneParts {
         shapes: vec![lamp],
         media: vec![],
+        textures: vec![],
         emitters: vec![],
         background: None,
         sensor: scenes::camera(

@@ -30,6 +30,7 @@ fn ball(fog: Medium, integrator: IntegratorSpec) -> Scene {
     Scene::assemble(SceneParts {
         shapes: vec![ball, lamp, scenes::shape("floor", vec![floor], scenes::diffuse(0.7))],
         media: vec![fog, absorber],
+        textures: vec![],
         emitters: vec![],
         background: haze,
         sensor: scenes::camera(

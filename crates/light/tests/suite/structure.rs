@@ -112,6 +112,7 @@ fn an_unwarping_film_subtracts_the_way_to_the_first_surface_behind_fog() {
     let scene = Scene::assemble(SceneParts {
         shapes: vec![ball],
         media: vec![scenes::fog(0.6, 0.7, 0.2)],
+        textures: vec![],
         emitters: vec![scenes::point(DVec3::new(0.4, 0.3, -1.6), Rgb::ONE)],
         background: Some(MediumId(0)),
         sensor: scenes::camera(DVec3::ZERO, -DVec3::Z, 60.0, (4, 4)),
@@ -141,6 +142,7 @@ fn an_unwarping_film_shows_a_surface_when_light_reaches_it() {
     let scene = Scene::assemble(SceneParts {
         shapes: vec![scenes::shape("wall", vec![plate], scenes::diffuse(0.6))],
         media: vec![],
+        textures: vec![],
         emitters: vec![scenes::point(lamp, Rgb::ONE)],
         background: None,
         sensor: scenes::camera(DVec3::new(0.0, 0.0, 3.0), -DVec3::Z, 40.0, (4, 4)),

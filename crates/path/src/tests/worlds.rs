@@ -30,6 +30,7 @@ pub(super) fn camera(eye: DVec3, target: DVec3, (fov, w, h): (f64, usize, usize)
     SceneParts {
         shapes: vec![],
         media: vec![],
+        textures: vec![],
         emitters: vec![],
         background: None,
         sensor: Sensor::perspective(to_world, fov, FovAxis::X, w, h),

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Reference;
+use super::textures::Reflectance;
 use super::values::{Colour, Fraction, Index, Ior, MeanCosine, NonNegative, Roughness, grey};
 
 /// What a surface does to light.
@@ -33,9 +34,9 @@ pub enum Bsdf {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Diffuse {
-    /// Part of the light that is reflected, 0 to 1.
+    /// Part of the light that is reflected, 0 to 1: the same all over, or a texture.
     #[serde(default = "half")]
-    pub reflectance: Colour<Fraction>,
+    pub reflectance: Reflectance,
 }
 
 impl Default for Diffuse {
@@ -235,8 +236,8 @@ pub struct Hg {
     pub g: MeanCosine,
 }
 
-const fn half() -> Colour<Fraction> {
-    grey(0.5)
+const fn half() -> Reflectance {
+    Reflectance::Colour(grey(0.5))
 }
 
 const fn white() -> Colour<Fraction> {

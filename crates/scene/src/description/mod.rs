@@ -20,6 +20,7 @@ mod refused;
 mod schema;
 mod sensors;
 mod shapes;
+mod textures;
 mod transform;
 mod values;
 
@@ -39,6 +40,7 @@ pub use sensors::{
     PixelCount, PixelFormat, Rfilter, Sensor, TransientHdrFilm,
 };
 pub use shapes::{Attributes, Cube, Cylinder, Disk, Mesh, Rectangle, Shape, Sphere};
+pub use textures::{Bitmap, Checkerboard, FilterType, Reflectance, WrapMode};
 pub use transform::{LookAt, Rotate, Scale, Step, Transform, Vector};
 pub use values::{
     Colour, ConeAngle, FieldOfView, Fraction, Index, Ior, Light, MATERIALS, MeanCosine,

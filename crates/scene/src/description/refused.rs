@@ -120,12 +120,17 @@ const GROUPS: &[Group] = &[
         names: &["independent", "ldsampler", "multijitter", "orthogonal", "stratified"],
     },
     Group {
+        kind: "a texture in this place",
+        instead: "textures are for the `reflectance` of `diffuse`, and stand there in place; \
+            elsewhere write a number, or linear RGB as a list of 3 numbers",
+        names: &["bitmap", "checkerboard"],
+    },
+    Group {
         kind: "a texture",
-        instead: "write a number, or linear RGB as a list of 3 numbers",
+        instead: "write a number, or linear RGB as a list of 3 numbers; `diffuse` takes \
+            `checkerboard` and `bitmap` as `reflectance`",
         names: &[
-            "bitmap",
             "blackbody",
-            "checkerboard",
             "d65",
             "discrete",
             "irregular",
@@ -194,7 +199,7 @@ const PARAMETERS: &[(&str, &str)] = &[
     ("shutter_open", "the scene stands still: leave it out"),
     ("silhouette_sampling_weight", "leave it out"),
     ("temporal_filter", "bins are integrated over their width: leave it out"),
-    ("texture", "textures are not supported"),
+    ("texture", "textures stand under the name of what they change: `reflectance`"),
 ];
 
 /// What to do about a Mitsuba parameter that is not supported (where its plugin is).

@@ -82,6 +82,11 @@ impl Planar {
         (normal.dot(self.normal) > 0.0).then_some(normal)
     }
 
+    /// Whether its corners have texture coordinates.
+    pub fn has_vertex_uv(&self) -> bool {
+        self.vertices.as_ref().is_some_and(|data| data.uv.is_some())
+    }
+
     /// Interpolated texture coordinates of the corners, if they have any.
     pub fn vertex_uv(&self, position: DVec3) -> Option<DVec2> {
         let [t0, t1, t2] = self.vertices.as_ref()?.uv?;

@@ -52,7 +52,7 @@ fn unknown_variant(word: &str, enum_name: &str, variants: &[&str]) -> Trouble {
             .hint("`ggx` of the same `alpha` has longer tails than `beckmann`");
     }
     let kind = Kind::of_enum(enum_name);
-    if (kind.is_some() || enum_name == "ColourType")
+    if (kind.is_some() || ["ColourType", "TextureType"].contains(&enum_name))
         && let Some(trouble) = refused(word)
     {
         return trouble;

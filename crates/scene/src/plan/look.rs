@@ -4,7 +4,7 @@ use tpb_optics::microfacet::Metal;
 use tpb_optics::{Coefficients, Rgb};
 
 use super::{Kernel, Media};
-use crate::{Bsdf, EmitterKind, Reflector, Region, RoughMetal, Scene, Shape};
+use crate::{Bsdf, EmitterKind, Reflector, Region, RoughMetal, Scene, Shape, Texture};
 
 pub(super) fn media(scene: &Scene) -> Media {
     let scatters = scene.media.iter().any(|m| m.coefficients.scatters());
@@ -20,7 +20,9 @@ pub(super) fn is_chromatic(scene: &Scene) -> bool {
     let media = scene.media.iter().flat_map(|m| [m.coefficients.sigma_s, m.coefficients.sigma_t]);
     let surfaces = scene.shapes.iter().flat_map(|s| s.bsdf.factors());
     let emitters = scene.emitters.iter().map(|e| e.kind.color());
-    media.chain(surfaces).chain(emitters).any(|c| !Rgb::is_achromatic(c))
+    let plain = |c: Rgb| c.is_achromatic();
+    !(media.chain(surfaces).chain(emitters).all(plain)
+        && scene.textures.iter().all(Texture::is_achromatic))
 }
 
 /// Whether an emitter of some area gives light.
@@ -44,7 +46,9 @@ pub(super) fn endless(scene: &Scene) -> Vec<String> {
         let Bsdf::Opaque { front, back } = shape.bsdf else { continue };
         let full = [front, back].iter().any(|side| match side {
             Reflector::Black => false,
-            Reflector::Diffuse(rho) | Reflector::Mirror(rho) => rho.max_channel() >= 1.0,
+            Reflector::Diffuse(_) | Reflector::Textured(_) | Reflector::Mirror(_) => {
+                side.most_reflectance(&scene.textures).max_channel() >= 1.0
+            }
             // Real metals absorb.
             Reflector::Rough(RoughMetal { surface, reflectance }) => {
                 surface.metal == Metal::Perfect && reflectance.max_channel() >= 1.0

@@ -59,7 +59,7 @@ fn words() {
         ("missing type", cornell("\"type\": \"homogeneous\",", "")),
         ("missing type inside", cornell("{\"type\": \"hg\", \"g\": 0.0}", "{\"g\": 0.0}")),
         ("plugin of Mitsuba", cornell("{\"type\": \"null\"}", "{\"type\": \"roughplastic\"}")),
-        ("texture", cornell("\"reflectance\": 0.75", "\"reflectance\": {\"type\": \"bitmap\"}")),
+        ("texture", cornell("\"reflectance\": 0.75", "\"reflectance\": {\"type\": \"d65\"}")),
         ("filter", cornell("{\"type\": \"box\"}", "{\"type\": \"gaussian\"}")),
         ("metal", scene_with("s", "{\"type\": \"conductor\", \"material\": \"Cu\"}")),
         ("default metal", scene_with("s", "{\"type\": \"conductor\"}")),

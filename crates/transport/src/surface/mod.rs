@@ -134,6 +134,10 @@ impl<'a> Encounter<'a> {
                     self.turned(turn, false)
                 }
                 Reflector::Diffuse(factor) => Response::Diffuse(DiffuseLobe::new(self, *factor)),
+                Reflector::Textured(texture) => {
+                    let factor = self.scene.textured(*texture, self.hit);
+                    Response::Diffuse(DiffuseLobe::new(self, factor))
+                }
                 Reflector::Rough(metal) => Response::Rough(RoughLobe::metal(self, metal)),
             },
         }

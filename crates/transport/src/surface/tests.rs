@@ -32,6 +32,7 @@ fn scene(lamp: DVec3, shapes: Vec<(Primitive, Bsdf)>) -> Scene {
     Scene::assemble(SceneParts {
         shapes: shapes.into_iter().map(part).collect(),
         media: vec![],
+        textures: vec![],
         emitters: vec![EmitterPart { name: "point".into(), kind, stated_medium: None }],
         background: None,
         sensor: Sensor::perspective(to_world, 40.0, FovAxis::X, 1, 1),

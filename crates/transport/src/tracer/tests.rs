@@ -28,6 +28,7 @@ fn ball(reflectance: f64, sigma_s: [f64; 3], sigma_t: [f64; 3]) -> Scene {
             radiance: None,
         }],
         media: vec![Medium { name: "fog".into(), coefficients, phase, eta: None }],
+        textures: vec![],
         emitters: vec![EmitterPart { name: "point".into(), kind, stated_medium: None }],
         background: Some(MediumId(0)),
         sensor: Sensor::perspective(DAffine3::IDENTITY, 40.0, FovAxis::X, 1, 1),

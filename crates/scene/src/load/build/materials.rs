@@ -7,6 +7,7 @@ use crate::description::{self as words, Homogeneous, Kind, Reference};
 use crate::load::dictionary::Object;
 use crate::load::tree::Node;
 use crate::load::trouble::{Outcome, Trouble};
+use crate::texture::Coordinates;
 use crate::{Bsdf, Dielectric, Medium, MediumId, Reflector};
 
 /// A BSDF, before it is known on which side of which surface it acts.
@@ -16,19 +17,34 @@ enum Surface {
     Twosided(Bsdf),
 }
 
+/// What is known on the way to a BSDF.
+struct Way<'w> {
+    /// The entries that references have led through.
+    entries: Vec<usize>,
+    /// Texture coordinates of the shape that it is for.
+    coordinates: Option<&'w Coordinates>,
+}
+
 impl<'a> Builder<'a> {
-    /// The material of a shape.
-    pub(super) fn bsdf(&self, bsdf: &words::Bsdf, node: &Node) -> Outcome<Bsdf> {
-        Ok(match self.surface(bsdf, node, &mut Vec::new())? {
+    /// The material of a shape with these texture coordinates, or one that no shape has yet.
+    pub(super) fn bsdf(
+        &mut self,
+        bsdf: &words::Bsdf,
+        node: &Node,
+        coordinates: Option<&Coordinates>,
+    ) -> Outcome<Bsdf> {
+        Ok(match self.surface(bsdf, node, &mut Way { entries: Vec::new(), coordinates })? {
             Surface::Passes(bsdf) | Surface::Twosided(bsdf) => bsdf,
             Surface::Reflects(front) => Bsdf::Opaque { front, back: Reflector::Black },
         })
     }
 
-    /// `way` holds the entries that references have led through.
-    fn surface(&self, bsdf: &words::Bsdf, node: &Node, way: &mut Vec<usize>) -> Outcome<Surface> {
+    fn surface(&mut self, bsdf: &words::Bsdf, node: &Node, way: &mut Way) -> Outcome<Surface> {
         Ok(match bsdf {
-            words::Bsdf::Diffuse(d) => Surface::Reflects(Reflector::Diffuse(d.reflectance.rgb())),
+            words::Bsdf::Diffuse(d) => {
+                let place = node.get_or_self("reflectance");
+                Surface::Reflects(self.diffuse(&d.reflectance, place, way.coordinates)?)
+            }
             words::Bsdf::Conductor(c) => {
                 Surface::Reflects(Reflector::Mirror(c.specular_reflectance.rgb()))
             }
@@ -56,29 +72,30 @@ impl<'a> Builder<'a> {
     }
 
     fn referenced_surface(
-        &self,
+        &mut self,
         reference: &Reference,
         node: &Node,
-        way: &mut Vec<usize>,
+        way: &mut Way,
     ) -> Outcome<Surface> {
-        let index = self.dictionary.index(reference, node, Kind::Bsdf)?;
-        if way.contains(&index) {
+        let dictionary = self.dictionary;
+        let index = dictionary.index(reference, node, Kind::Bsdf)?;
+        if way.entries.contains(&index) {
             return Err(Trouble::new(format!("`{}` refers to itself", reference.id))
                 .at(node.get_or_self("id"))
                 .hint("a chain of references must end at a BSDF that has none"));
         }
-        let entry = &self.dictionary.entries[index];
+        let entry = &dictionary.entries[index];
         let Object::Bsdf(bsdf) = &entry.object else {
             return Err(Trouble::new(format!("`{}` is not a BSDF", reference.id)).at(node));
         };
-        way.push(index);
+        way.entries.push(index);
         let surface = self.surface(bsdf, &entry.member.value, way)?;
-        way.pop();
+        way.entries.pop();
         Ok(surface)
     }
 
     /// One side of a `twosided`.
-    fn side(&self, bsdf: &words::Bsdf, node: &Node, way: &mut Vec<usize>) -> Outcome<Reflector> {
+    fn side(&mut self, bsdf: &words::Bsdf, node: &Node, way: &mut Way) -> Outcome<Reflector> {
         match self.surface(bsdf, node, way)? {
             Surface::Reflects(reflector) => Ok(reflector),
             Surface::Passes(_) | Surface::Twosided(_) => {
@@ -156,11 +173,12 @@ impl<'a> Builder<'a> {
     }
 
     /// BSDFs and media that nothing uses are to be right as well.
-    pub(super) fn check_shared_materials(&self) -> Outcome<()> {
-        for entry in &self.dictionary.entries {
+    pub(super) fn check_shared_materials(&mut self) -> Outcome<()> {
+        let dictionary = self.dictionary;
+        for entry in &dictionary.entries {
             let node = &entry.member.value;
             match &entry.object {
-                Object::Bsdf(bsdf) => drop(self.bsdf(bsdf, node)?),
+                Object::Bsdf(bsdf) => drop(self.bsdf(bsdf, node, None)?),
                 Object::Medium(words::Medium::Homogeneous(medium)) => {
                     self.homogeneous(medium, node, String::new())?;
                 }

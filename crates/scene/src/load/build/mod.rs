@@ -9,20 +9,23 @@ mod lamps;
 mod materials;
 mod rough;
 mod shapes;
+mod textures;
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::dictionary::{Dictionary, Object};
 use super::tree::{Member, Node};
 use super::trouble::{Outcome, Trouble};
 use crate::description::Kind;
-use crate::{AssembleError, IntegratorSpec, Medium, MediumId, SceneParts};
+use crate::texture::Bitmap;
+use crate::{AssembleError, IntegratorSpec, Medium, MediumId, SceneParts, Texture};
 
 /// A scene being built.
 pub(crate) struct Builder<'a> {
     dictionary: &'a Dictionary<'a>,
-    /// Where the names of mesh files start from.
+    /// Where the names of meshes and images start from.
     directory: &'a Path,
     media: Vec<Medium>,
     /// Where each medium stands.
@@ -30,6 +33,9 @@ pub(crate) struct Builder<'a> {
     /// The media that stand in the scene itself, by the index of their entry.
     shared_media: BTreeMap<usize, MediumId>,
     background: Option<MediumId>,
+    textures: Vec<Texture>,
+    /// Images by file, raw or not.
+    images: BTreeMap<(PathBuf, bool), Arc<Bitmap>>,
 }
 
 impl<'a> Builder<'a> {
@@ -41,6 +47,8 @@ impl<'a> Builder<'a> {
             medium_nodes: Vec::new(),
             shared_media: BTreeMap::new(),
             background: None,
+            textures: Vec::new(),
+            images: BTreeMap::new(),
         }
     }
 
@@ -64,6 +72,7 @@ impl<'a> Builder<'a> {
         Ok(SceneParts {
             shapes,
             media: self.media.clone(),
+            textures: std::mem::take(&mut self.textures),
             emitters,
             background: self.background,
             sensor,

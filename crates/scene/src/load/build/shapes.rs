@@ -1,6 +1,7 @@
 //! Shapes: primitives in world coordinates, material, media and emission.
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
+use tpb_optics::Frame;
 
 use super::Builder;
 use crate::description::{self as words, Attributes, ShapeEmitter};
@@ -8,6 +9,7 @@ use crate::geometry::{Cylinder, Outline, Planar, Sphere};
 use crate::load::tree::{Member, Node};
 use crate::load::trouble::{Outcome, Trouble};
 use crate::load::{mesh, names, transform};
+use crate::texture::Coordinates;
 use crate::{Bsdf, MediumBoundary, MediumId, Primitive, Reflector, ShapePart};
 
 /// Coordinates and radii must not exceed this \[m\], so that their fourth powers stay finite, also
@@ -23,7 +25,9 @@ impl<'a> Builder<'a> {
         let attributes = shape.attributes();
         let to_world = transform::to_affine(attributes.to_world, node.get_or_self("to_world"))?;
         let primitives = self.primitives(shape, &to_world, attributes.flip_normals, node)?;
-        let bsdf = self.shape_bsdf(&attributes, node)?;
+        let coordinates = coordinates(shape, &to_world);
+        let bsdf = self.shape_bsdf(&attributes, node, &coordinates)?;
+        self.check_uv(&bsdf, &coordinates, &primitives, node)?;
         let radiance = attributes.emitter.map(|ShapeEmitter::Area(area)| area.radiance.rgb());
         if radiance.is_some() && bsdf == Bsdf::Null {
             return Err(Trouble::new("a `null` surface cannot shine")
@@ -35,17 +39,38 @@ impl<'a> Builder<'a> {
     }
 
     /// As in Mitsuba, a shape without a BSDF is diffuse, and black if it shines.
-    fn shape_bsdf(&self, attributes: &Attributes, node: &Node) -> Outcome<Bsdf> {
-        match attributes.bsdf {
-            Some(bsdf) => self.bsdf(bsdf, node.get_or_self("bsdf")),
-            None if attributes.emitter.is_some() => {
-                Ok(Bsdf::Opaque { front: Reflector::Black, back: Reflector::Black })
-            }
-            None => {
-                let front = Reflector::Diffuse(words::Diffuse::default().reflectance.rgb());
-                Ok(Bsdf::Opaque { front, back: Reflector::Black })
-            }
+    fn shape_bsdf(
+        &mut self,
+        attributes: &Attributes,
+        node: &Node,
+        coordinates: &Coordinates,
+    ) -> Outcome<Bsdf> {
+        let front = match attributes.bsdf {
+            Some(bsdf) => return self.bsdf(bsdf, node.get_or_self("bsdf"), Some(coordinates)),
+            None if attributes.emitter.is_some() => Reflector::Black,
+            None => self.diffuse(&words::Diffuse::default().reflectance, node, None)?,
+        };
+        Ok(Bsdf::Opaque { front, back: Reflector::Black })
+    }
+
+    /// A textured mesh needs texture coordinates.
+    fn check_uv(
+        &self,
+        bsdf: &Bsdf,
+        coordinates: &Coordinates,
+        primitives: &[Primitive],
+        node: &Node,
+    ) -> Outcome<()> {
+        let textured = |r: &Reflector| matches!(r, Reflector::Textured(_));
+        let Bsdf::Opaque { front, back } = bsdf else { return Ok(()) };
+        let flat = |p: &Primitive| matches!(p, Primitive::Planar(t) if !t.has_vertex_uv());
+        let wanted = (textured(front) || textured(back)) && *coordinates == Coordinates::Vertices;
+        if wanted && primitives.iter().any(flat) {
+            return Err(Trouble::new("the mesh file has no texture coordinates for its texture")
+                .at(node.get_or_self("filename"))
+                .hint("`vt` in OBJ files; `u` and `v`, or `s` and `t`, in PLY files"));
         }
+        Ok(())
     }
 
     fn boundary(
@@ -187,6 +212,28 @@ fn cylinder(
     let radius = cylinder.radius.get() * scale.abs();
     within_limits(&[p0, p1], &[radius, (p1 - p0).length()], node)?;
     Ok(vec![Primitive::Cylinder(Cylinder::new(p0, p1, radius, flip))])
+}
+
+/// Mitsuba's texture coordinates of a shape.
+fn coordinates(shape: &words::Shape, to_world: &DAffine3) -> Coordinates {
+    let local = |from_local: DAffine3| (*to_world * from_local).inverse();
+    match shape {
+        words::Shape::Rectangle(_) => Coordinates::Rectangle(to_world.inverse()),
+        words::Shape::Cube(_) => Coordinates::Cube(to_world.inverse()),
+        words::Shape::Disk(_) => Coordinates::Disk(to_world.inverse()),
+        words::Shape::Sphere(sphere) => Coordinates::Sphere(local(
+            DAffine3::from_translation(sphere.center.into())
+                * DAffine3::from_scale(DVec3::splat(sphere.radius.get())),
+        )),
+        words::Shape::Cylinder(c) => {
+            let (p0, p1) = (DVec3::from(c.p0), DVec3::from(c.p1));
+            let frame = Frame::from_z((p1 - p0).normalize());
+            let (r, length) = (c.radius.get(), (p1 - p0).length());
+            let matrix = DMat3::from_cols(r * frame.x, r * frame.y, length * frame.z);
+            Coordinates::Cylinder(local(DAffine3::from_mat3_translation(matrix, p0)))
+        }
+        words::Shape::Obj(_) | words::Shape::Ply(_) => Coordinates::Vertices,
+    }
 }
 
 fn is_mirrored(to_world: &DAffine3) -> bool {
