@@ -2,7 +2,8 @@
 //!
 //! All weights are balance heuristics. Divided by p_exp(t) p_L(y), with h = p_dir/p_L the ratio of
 //! the densities per steradian of meeting the light by chance and of choosing it, and
-//! e = p_equi(t|y)/p_exp(t) (0 away from flights that are seen from the eye), they are
+//! e = p_equi(t|y)/p_exp(t) (0 away from flights that are seen from the eye, and for directional
+//! light, which has no place y), they are
 //!
 //! ```text
 //! next event 1/(1 + e + h)      equiangular e/(1 + e + h)      hit h/(1 + e + h)
@@ -66,7 +67,10 @@ impl<const C: usize> Walk<'_, '_, C> {
         let Some(light) = self.world.scene.sample_light(self.rng) else { return };
         let throughput = self.path.radiance_throughput();
         self.connect(&light, vertex, opl, throughput, scattering, |h| {
-            let e = seen.map_or(0.0, |seen| seen.equiangular_ratio(light.position));
+            let e = match seen {
+                Some(seen) if !light.collimated => seen.equiangular_ratio(light.position),
+                _ => 0.0,
+            };
             1.0 / (1.0 + e + h)
         });
     }
@@ -75,6 +79,9 @@ impl<const C: usize> Walk<'_, '_, C> {
     pub(crate) fn equiangular(&mut self, flight: &Flight, free: &FreeFlight<'_, C>) {
         let Some((start, end)) = free.extent() else { return };
         let Some(light) = self.world.scene.sample_light(self.rng) else { return };
+        if light.collimated {
+            return;
+        }
         let towards = Equiangular::new(flight.origin, flight.direction, start, end, light.position);
         if !towards.is_proper() {
             return;

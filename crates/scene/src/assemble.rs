@@ -1,7 +1,7 @@
 //! From parts to a scene: laid out, consistent, and with a region at the camera and every emitter
 //! ([`crate::probe`]).
 
-use tpb_accel::{Bvh, Quality};
+use tpb_accel::{Aabb, Bvh, Quality};
 use tpb_optics::Rgb;
 
 use crate::emitter::EmittingSurface;
@@ -117,6 +117,12 @@ pub enum AssembleError {
         /// The emitter.
         emitter: String,
     },
+    /// Directional light in a scene without shapes: nobody can say what it should cover.
+    #[error("directional emitter '{emitter}' covers the shapes of the scene, but there are none")]
+    NothingToCover {
+        /// The emitter.
+        emitter: String,
+    },
     /// Two surfaces in the same place, and light can tell them apart: which is met first, nobody
     /// can say.
     #[error("'{shape}' lies in the same place as '{other}'")]
@@ -144,7 +150,7 @@ impl AssembleError {
         match self {
             Self::Disagreement { first, .. } => first,
             Self::MediumIndex { medium, .. } => medium,
-            Self::AtEmitter { emitter } => emitter,
+            Self::AtEmitter { emitter } | Self::NothingToCover { emitter } => emitter,
             Self::OnBoundary { shape, .. }
             | Self::OnSurface { shape, .. }
             | Self::Coincident { shape, .. }
@@ -159,7 +165,7 @@ impl Scene {
     pub fn assemble(parts: SceneParts) -> Result<Self, AssembleError> {
         let media_eta = media_indices(&parts)?;
         let stated: Vec<_> = parts.emitters.iter().map(|e| e.stated_medium).collect();
-        let mut scene = lay_out(parts, &media_eta);
+        let mut scene = lay_out(cover_all(parts)?, &media_eta);
         check_null_boundaries(&scene, &media_eta)?;
         let probe = Probe::new(&scene, &media_eta);
         probe.check_surfaces()?;
@@ -200,6 +206,26 @@ fn media_indices(parts: &SceneParts) -> Result<Vec<f64>, AssembleError> {
         }
     }
     Ok(found.into_iter().map(|f| f.map_or(1.0, |(eta, _)| eta)).collect())
+}
+
+/// The sphere around all shapes is larger than that around their box by this, so that no shape
+/// touches the disc of directional light.
+const COVER: f64 = 1.001;
+
+/// Places the discs that directional light starts on.
+fn cover_all(mut parts: SceneParts) -> Result<SceneParts, AssembleError> {
+    let boxes = parts.shapes.iter().flat_map(|shape| &shape.primitives).map(Primitive::bounds);
+    let bounds = boxes.fold(Aabb::EMPTY, Aabb::union);
+    for emitter in &mut parts.emitters {
+        if let EmitterKind::Directional { axis, position, radius, .. } = &mut emitter.kind {
+            if parts.shapes.is_empty() {
+                return Err(AssembleError::NothingToCover { emitter: emitter.name.clone() });
+            }
+            *radius = COVER * bounds.radius();
+            *position = bounds.centre() - *radius * *axis;
+        }
+    }
+    Ok(parts)
 }
 
 fn lay_out(parts: SceneParts, media_eta: &[f64]) -> Scene {
@@ -268,7 +294,7 @@ pub(crate) fn check_camera(scene: &Scene) -> Result<(), AssembleError> {
         EmitterKind::Point { position, .. } | EmitterKind::Spot { position, .. } => {
             position == scene.sensor.position && scatters(e.region)
         }
-        EmitterKind::Area { .. } | EmitterKind::Laser { .. } => false,
+        _ => false,
     };
     match scene.emitters.iter().find(at_camera) {
         Some(emitter) => Err(AssembleError::AtEmitter { emitter: emitter.name.clone() }),
@@ -278,8 +304,8 @@ pub(crate) fn check_camera(scene: &Scene) -> Result<(), AssembleError> {
 
 /// Null boundaries that name media on both sides must not bend light.
 fn check_null_boundaries(scene: &Scene, media_eta: &[f64]) -> Result<(), AssembleError> {
-    for shape in &scene.shapes {
-        let (Bsdf::Null, Some(b)) = (shape.bsdf, shape.boundary) else { continue };
+    for shape in scene.shapes.iter().filter(|shape| shape.bsdf.keeps_index()) {
+        let Some(b) = shape.boundary else { continue };
         let (Some(i), Some(e)) = (b.interior, b.exterior) else { continue };
         let (interior, exterior) = (media_eta[i.0 as usize], media_eta[e.0 as usize]);
         if interior != exterior {

@@ -17,6 +17,8 @@ pub enum Bsdf {
     Dielectric(Dielectric),
     /// An interface of microfacets between two refractive indices, which differ.
     RoughDielectric(Dielectric, Ggx),
+    /// A slab of the interior index in the exterior one, thinner than anything else.
+    ThinDielectric(Dielectric),
     /// An opaque surface with a reflector on each side.
     Opaque {
         /// On the side of the normal.
@@ -82,7 +84,7 @@ impl Bsdf {
     pub fn reflector(&self, facing_front: bool) -> Option<Reflector> {
         match *self {
             Self::Opaque { front, back } => Some(if facing_front { front } else { back }),
-            Self::Null | Self::Dielectric(_) | Self::RoughDielectric(..) => None,
+            _ => None,
         }
     }
 
@@ -91,13 +93,18 @@ impl Bsdf {
     pub fn interface(&self) -> Option<&Dielectric> {
         match self {
             Self::Dielectric(glass) | Self::RoughDielectric(glass, _) => Some(glass),
-            Self::Null | Self::Opaque { .. } => None,
+            Self::Null | Self::ThinDielectric(_) | Self::Opaque { .. } => None,
         }
     }
 
-    /// Whether it passes light on in one direction only: smooth glass, or a mirror.
-    pub fn is_specular(&self) -> bool {
-        matches!(self, Self::Dielectric(_)) || self.is_mirror()
+    /// Whether light crosses it into the same refractive index.
+    pub fn keeps_index(&self) -> bool {
+        matches!(self, Self::Null | Self::ThinDielectric(_))
+    }
+
+    /// Whether it is smooth and lets light pass.
+    pub fn is_smooth_glass(&self) -> bool {
+        matches!(self, Self::Dielectric(_) | Self::ThinDielectric(_))
     }
 
     /// Whether some side is rough: it spreads light, but not diffusely.
@@ -135,7 +142,7 @@ impl Bsdf {
         };
         match *self {
             Self::Null => vec![],
-            Self::Dielectric(d) | Self::RoughDielectric(d, _) => {
+            Self::Dielectric(d) | Self::RoughDielectric(d, _) | Self::ThinDielectric(d) => {
                 vec![d.reflectance, d.transmittance]
             }
             Self::Opaque { front, back } => [of(front), of(back)].concat(),

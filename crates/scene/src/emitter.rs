@@ -1,8 +1,13 @@
 //! Emitters, seen from both ends: photons leave them, and cameras' paths connect to them.
 //!
 //! Powers and intensities follow Mitsuba: `point` and `spot` in W/sr, `area` in W m⁻² sr⁻¹ from the
-//! side of the normal only, our `laser` in W. With pulses, read J for W. Every pulse leaves the
-//! emitter's surface at OPL 0.
+//! side of the normal only, `directional` in W/m², our `laser` in W. With pulses, read J for W. Every
+//! pulse leaves the emitter's surface at OPL 0.
+//!
+//! **Directional light** has no surface: it starts, at OPL 0, on the disc that touches the sphere
+//! around all shapes from the side that the light comes from. The sphere is about the middle of the
+//! shapes' common box, through its corners, and 0.1 % larger. What is outside of the cylinder that
+//! the disc sweeps, fog without end for example, has none of it.
 
 use std::f64::consts::PI;
 
@@ -54,6 +59,17 @@ pub enum EmitterKind {
         /// Area \[m²\].
         area: f64,
     },
+    /// Parallel light that covers all shapes.
+    Directional {
+        /// Unit direction of the light.
+        axis: DVec3,
+        /// Irradiance across it \[W/m²\].
+        irradiance: Rgb,
+        /// Centre of the disc that the light starts on \[m\]; found when the scene is assembled.
+        position: DVec3,
+        /// Radius of that disc \[m\]; likewise.
+        radius: f64,
+    },
     /// A collimated round beam of uniform irradiance (extension).
     Laser {
         /// Centre of the disc that the light leaves \[m\].
@@ -78,6 +94,8 @@ pub struct LightPoint {
     pub primitive: Option<u32>,
     /// Normal there (area emitters).
     pub normal: Option<DVec3>,
+    /// Whether its light comes along one direction, so that its position means nothing.
+    pub collimated: bool,
     /// Density of the choice: per m² on area emitters, else a probability.
     pub pdf: f64,
 }
@@ -91,7 +109,7 @@ pub struct Incident<const C: usize> {
     pub distance: f64,
     /// What arrives per unit of the measure that [`LightPoint::pdf`] is a density of: divided by
     /// it, irradiance across the direction. Area emitters: L·cosθ/d² \[W m⁻² per m² of emitter\];
-    /// points: I/d² \[W/m²\].
+    /// points: I/d² \[W/m²\]; directional light: its irradiance.
     pub flux: Spectrum<C>,
     /// Density of the choice per steradian at the receiving point; infinite for points.
     pub pdf_solid_angle: f64,
@@ -121,6 +139,7 @@ impl EmitterKind {
                 intensity * (2.0 * PI * spot_integral(cos_cutoff, cos_beam))
             }
             Self::Area { radiance, area, .. } => radiance * (PI * area),
+            Self::Directional { irradiance, radius, .. } => irradiance * (PI * radius * radius),
             Self::Laser { power, .. } => power,
         }
     }
@@ -131,7 +150,7 @@ impl EmitterKind {
             Self::Point { position, .. }
             | Self::Spot { position, .. }
             | Self::Laser { position, .. } => Some(position),
-            Self::Area { .. } => None,
+            Self::Area { .. } | Self::Directional { .. } => None,
         }
     }
 
@@ -146,6 +165,7 @@ impl EmitterKind {
         match *self {
             Self::Point { intensity, .. } | Self::Spot { intensity, .. } => intensity,
             Self::Area { radiance, .. } => radiance,
+            Self::Directional { irradiance, .. } => irradiance,
             Self::Laser { power, .. } => power,
         }
     }
@@ -157,6 +177,15 @@ impl EmitterKind {
         point: &LightPoint,
         receiver: DVec3,
     ) -> Option<Incident<C>> {
+        if let Self::Directional { axis, irradiance, position, radius } = *self {
+            let from_disc = receiver - position;
+            let distance = from_disc.dot(axis);
+            let across = from_disc - distance * axis;
+            let lit = distance > 0.0 && across.length_squared() <= radius * radius;
+            let flux = irradiance.channels();
+            let pdf_solid_angle = f64::INFINITY;
+            return lit.then_some(Incident { direction: -axis, distance, flux, pdf_solid_angle });
+        }
         let to_light = point.position - receiver;
         let squared = to_light.length_squared();
         if squared == 0.0 {
@@ -177,7 +206,7 @@ impl EmitterKind {
                 }
                 (radiance * (cos / squared), point.pdf * squared / cos)
             }
-            Self::Laser { .. } => return None,
+            Self::Directional { .. } | Self::Laser { .. } => return None,
         };
         let flux = flux.channels();
         (!flux.is_zero()).then_some(Incident { direction, distance, flux, pdf_solid_angle })
@@ -210,7 +239,8 @@ impl EmitterKind {
                 let local = warp::cosine_hemisphere(rng.uniform(), rng.uniform());
                 (p.position, Some(primitive), Frame::from_z(p.normal).to_world(local), power)
             }
-            Self::Laser { position, axis, radius, .. } => {
+            Self::Laser { position, axis, radius, .. }
+            | Self::Directional { position, axis, radius, .. } => {
                 let disc = radius * warp::uniform_disc(rng.uniform(), rng.uniform());
                 let frame = Frame::from_z(axis);
                 (position + disc.x * frame.x + disc.y * frame.y, None, axis, power)

@@ -247,9 +247,31 @@ impl<'a> Probe<'a> {
                 self.around(&place, position)?
             }
             EmitterKind::Laser { position, axis, .. } => self.votes(position, None, axis),
+            EmitterKind::Directional { position, axis, radius, .. } => {
+                self.across(&place, position, axis, radius)?
+            }
             EmitterKind::Area { shape, .. } => self.before(&place, shape, true)?,
         };
         Ok(self.region(&votes))
+    }
+
+    /// What boundaries say about the region before a disc that sends light along `axis`.
+    fn across(
+        &self,
+        place: &str,
+        centre: DVec3,
+        axis: DVec3,
+        radius: f64,
+    ) -> Result<Votes, AssembleError> {
+        let mut all = Votes::default();
+        let frame = tpb_optics::Frame::from_z(axis);
+        let mut rng = Stream::new(3, 0, 0);
+        for _ in 0..PROBES_PER_PLACE {
+            let disc = radius * warp::uniform_disc(rng.uniform(), rng.uniform());
+            let position = centre + disc.x * frame.x + disc.y * frame.y;
+            self.merge(place, &mut all, self.votes(position, None, axis))?;
+        }
+        Ok(all)
     }
 
     /// A stated medium needs no vote; the index still comes from boundaries, else from the medium.
@@ -296,7 +318,8 @@ impl<'a> Probe<'a> {
                 let place = format!("the region {side} '{}'", shape.name);
                 etas[usize::from(front)] = self.before(&place, index, front)?.eta;
             }
-            if let (Bsdf::Null, [Some((interior, _)), Some((exterior, _))]) = (shape.bsdf, etas)
+            if let (true, [Some((interior, _)), Some((exterior, _))]) =
+                (shape.bsdf.keeps_index(), etas)
                 && interior != exterior
             {
                 let shape = shape.name.clone();

@@ -200,8 +200,23 @@ impl Scene {
         let (emitter, probability) = self.connection_choice.pick(rng)?;
         Some(match self.emitters[emitter].kind {
             EmitterKind::Point { position, .. } | EmitterKind::Spot { position, .. } => {
-                LightPoint { emitter, position, primitive: None, normal: None, pdf: probability }
+                LightPoint {
+                    emitter,
+                    position,
+                    primitive: None,
+                    normal: None,
+                    collimated: false,
+                    pdf: probability,
+                }
             }
+            EmitterKind::Directional { position, .. } => LightPoint {
+                emitter,
+                position,
+                primitive: None,
+                normal: None,
+                collimated: true,
+                pdf: probability,
+            },
             EmitterKind::Area { area, .. } => {
                 let (primitive, p) = self.pick_on_surface(emitter, rng);
                 LightPoint {
@@ -209,6 +224,7 @@ impl Scene {
                     position: p.position,
                     primitive: Some(primitive),
                     normal: Some(p.normal),
+                    collimated: false,
                     pdf: probability / area,
                 }
             }

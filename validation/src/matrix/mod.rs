@@ -16,6 +16,7 @@
 //! | `ball` | 1 in a medium, camera outside | quadrature along each ray of a fog ball |
 //! | `room` | all: fog in a box, a diffuse floor in it | none: methods against each other |
 //! | `interface` | 1 at rough glass with a lamp in it | textbook BTDF, averaged over pixels |
+//! | `texture` | all: textures, a smooth mesh, directional light | none: methods against each other |
 //! | `rough` | all: rough glass and rough metal in fog | none: methods against each other |
 
 pub mod cases;

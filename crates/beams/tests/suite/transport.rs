@@ -90,6 +90,7 @@ fn everything(integrator: IntegratorSpec) -> Scene {
             scenes::fog(0.4, 0.5, 0.5),
             scenes::colored_fog([2.0, 1.0, 0.0], [2.0, 1.5, 4.0], -0.2),
         ],
+        textures: vec![],
         emitters: vec![scenes::point(DVec3::new(0.1, 0.4, 0.3), Rgb::ONE), spot],
         background: Some(MediumId(0)),
         sensor: scenes::camera(DVec3::new(0.0, 0.0, 0.9), -DVec3::Z, 60.0, (6, 6)),

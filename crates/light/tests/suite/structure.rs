@@ -49,6 +49,7 @@ fn everything(integrator: IntegratorSpec, eye: DVec3) -> Scene {
             scenes::fog(0.4, 0.5, 0.5),
             scenes::colored_fog([2.0, 1.0, 0.0], [2.0, 1.5, 4.0], -0.2),
         ],
+        textures: vec![],
         emitters: vec![scenes::point(DVec3::new(0.1, 0.4, 0.3), Rgb::ONE)],
         background: Some(MediumId(0)),
         sensor: scenes::camera(eye, -DVec3::Z, 60.0, (6, 6)),

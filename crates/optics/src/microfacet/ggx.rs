@@ -47,19 +47,19 @@ impl Ggx {
     }
 
     /// The roughness α.
-    pub const fn alpha(&self) -> f64 {
+    pub const fn alpha(self) -> f64 {
         self.alpha
     }
 
     /// r of a direction: √(w_z² + α² (w_x² + w_y²)).
     #[inline]
-    pub(super) fn stretched(&self, w: DVec3) -> f64 {
+    pub(super) fn stretched(self, w: DVec3) -> f64 {
         (w.z * w.z + self.alpha * self.alpha * (w.x * w.x + w.y * w.y)).sqrt()
     }
 
     /// Λ of a direction with positive z.
     #[inline]
-    fn lambda(&self, w: DVec3) -> f64 {
+    fn lambda(self, w: DVec3) -> f64 {
         let across = self.alpha * self.alpha * (w.x * w.x + w.y * w.y);
         // Below the range of f64 the direction lies in the surface, as good as.
         (across / (2.0 * w.z * (w.z + self.stretched(w)))).min(1e300)
@@ -67,7 +67,7 @@ impl Ggx {
 
     /// D: area of microfacets with this normal per surface and steradian.
     #[inline]
-    pub fn density(&self, normal: DVec3) -> f64 {
+    pub fn density(self, normal: DVec3) -> f64 {
         let squared = self.alpha * self.alpha;
         let DVec3 { x, y, z } = normal;
         let base = x * x + y * y + squared * z * z;
@@ -76,27 +76,27 @@ impl Ggx {
 
     /// G1: the share of microfacets turned to `w` (z > 0) that is seen from there.
     #[inline]
-    pub fn masking(&self, w: DVec3) -> f64 {
+    pub fn masking(self, w: DVec3) -> f64 {
         2.0 * w.z / (w.z + self.stretched(w))
     }
 
     /// G2(a, b)/G1(a) for two directions on the same side, both with z > 0.
     #[inline]
-    pub fn shadowing_same_side(&self, a: DVec3, b: DVec3) -> f64 {
+    pub fn shadowing_same_side(self, a: DVec3, b: DVec3) -> f64 {
         let (ra, rb) = (self.stretched(a), self.stretched(b));
         b.z * (a.z + ra) / (b.z * ra + a.z * rb)
     }
 
     /// G2(a, b)/G1(a) for two directions on different sides, each given with z > 0 on its own.
     #[inline]
-    pub fn shadowing_two_sides(&self, a: DVec3, b: DVec3) -> f64 {
+    pub fn shadowing_two_sides(self, a: DVec3, b: DVec3) -> f64 {
         let (a, b) = (self.lambda(a), self.lambda(b));
         (a.ln_1p() + ln_beta(1.0 + a, 1.0 + b)).exp()
     }
 
     /// A microfacet's normal as seen from `w` (z > 0): density [`Ggx::visible_density`].
     #[inline]
-    pub fn sample_visible(&self, w: DVec3, [u1, u2]: [f64; 2]) -> DVec3 {
+    pub fn sample_visible(self, w: DVec3, [u1, u2]: [f64; 2]) -> DVec3 {
         let stretched = DVec3::new(self.alpha * w.x, self.alpha * w.y, w.z).normalize();
         let (sin_phi, cos_phi) = (2.0 * PI * u1).sin_cos();
         let z = 1.0 - u2 * (1.0 + stretched.z);
@@ -108,7 +108,7 @@ impl Ggx {
 
     /// Density of [`Ggx::sample_visible`] per steradian of normals: G1 D (w·h)/w_z.
     #[inline]
-    pub fn visible_density(&self, w: DVec3, normal: DVec3) -> f64 {
+    pub fn visible_density(self, w: DVec3, normal: DVec3) -> f64 {
         2.0 * w.dot(normal).max(0.0) * self.density(normal) / (w.z + self.stretched(w))
     }
 }
@@ -140,7 +140,7 @@ mod tests {
     }
 
     /// ∫ f over the hemisphere of normals by midpoints, fine where D is and towards the horizon.
-    fn over_normals(ggx: &Ggx, f: impl Fn(DVec3) -> f64) -> f64 {
+    fn over_normals(ggx: Ggx, f: impl Fn(DVec3) -> f64) -> f64 {
         let (n, m) = (2000, 256);
         let mut sum = 0.0;
         for i in 0..n {
@@ -166,11 +166,11 @@ mod tests {
     fn microfacets_cover_the_surface_once_from_every_direction() {
         for alpha in ALPHAS {
             let ggx = Ggx::new(alpha);
-            let whole = over_normals(&ggx, |h| ggx.density(h) * h.z);
+            let whole = over_normals(ggx, |h| ggx.density(h) * h.z);
             assert!((whole - 1.0).abs() < 1e-6, "{alpha}: {whole}");
             for cosine in [0.1, 0.5, 0.9, 1.0] {
                 let w = direction(cosine);
-                let seen = over_normals(&ggx, |h| ggx.visible_density(w, h));
+                let seen = over_normals(ggx, |h| ggx.visible_density(w, h));
                 // The midpoint rule at the border of what is turned to w.
                 assert!((seen - 1.0).abs() < 2e-4, "{alpha} {cosine}: {seen}");
                 let by_parts = |h: DVec3| ggx.masking(w) * ggx.density(h) * w.dot(h).max(0.0) / w.z;

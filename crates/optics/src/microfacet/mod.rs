@@ -44,7 +44,7 @@ impl Ggx {
     /// Density of the direction `to` that the visible normal `half` reflects `from` into, and
     /// f·cosθ without Fresnel's factor.
     #[inline]
-    fn reflected(&self, from: DVec3, to: DVec3, half: DVec3) -> (f64, f64) {
+    fn reflected(self, from: DVec3, to: DVec3, half: DVec3) -> (f64, f64) {
         let density = self.density(half);
         let (a, b) = (self.stretched(from), self.stretched(to));
         (0.5 * density / (from.z + a), 0.5 * density * to.z / (to.z * a + from.z * b))

@@ -2,11 +2,12 @@
 
 use glam::{DMat3, DVec3};
 use tpb_optics::Rgb;
-use tpb_scene::{Bsdf, IntegratorSpec, Reflector, Scene};
+use tpb_scene::{Bsdf, Dielectric, IntegratorSpec, MediumBoundary, Reflector, Scene, ShapePart};
 
 use super::stats::pass;
 use super::worlds::{
-    BLACK, ONE_RAY, ball, camera, cuboid, depths, glass, lamp, plate, shape, time, tracer,
+    BLACK, FOG, ONE_RAY, ball, camera, cuboid, depths, glass, lamp, medium, plate, shape, time,
+    tracer,
 };
 
 /// A glass ball (radius 1, η = 1.5) in an enclosure that emits radiance 2.
@@ -65,6 +66,62 @@ fn a_slab_delays_by_its_index_and_takes_two_reflections() {
     assert!((arrays.steady[0] / 4.0 - p).abs() < 4.0 * deviation, "{}", arrays.steady[0]);
     let bin = (0.5 * thickness / 1e-6).round() as usize;
     assert!((f64::from(arrays.pixel(0)[bin]) / arrays.steady[0] - 1.0).abs() < 1e-6);
+}
+
+/// An interface across the view at distance z; its normal looks at the camera.
+fn across(name: &str, z: f64, (before, behind): (f64, f64)) -> ShapePart {
+    let bsdf = Bsdf::Dielectric(Dielectric {
+        interior_eta: behind,
+        exterior_eta: before,
+        reflectance: Rgb::ONE,
+        transmittance: Rgb::ONE,
+    });
+    shape(name, vec![plate(DVec3::Z * z, 4.0 * DVec3::Y, 4.0 * DVec3::X)], bsdf)
+}
+
+/// A lamp at distance 5 seen through liquid (1.33, thickness 0.6, absorbing) on glass (1.5, 0.4), with
+/// one interface between the two.
+#[test]
+fn liquid_on_glass_delays_by_both_indices() {
+    let mut parts = camera(DVec3::ZERO, DVec3::Z, ONE_RAY);
+    parts.media.push(medium(Rgb::ZERO, Rgb::splat(0.5), 0.0));
+    let between = |part: ShapePart, interior, exterior| ShapePart {
+        boundary: Some(MediumBoundary { interior, exterior }),
+        ..part
+    };
+    parts.shapes.push(between(across("air-liquid", 2.0, (1.0, 1.33)), Some(FOG), None));
+    parts.shapes.push(between(across("liquid-glass", 2.6, (1.33, 1.5)), None, Some(FOG)));
+    parts.shapes.push(across("glass-air", 3.0, (1.5, 1.0)));
+    parts.shapes.push(lamp(plate(DVec3::Z * 5.0, DVec3::Y, DVec3::X), 4.0));
+    parts.film.time = Some(time(5.0 - 5e-7, 7.0 - 5e-7, 2_000_000));
+    let scene = Scene::assemble(parts).unwrap();
+    let samples = 40_000;
+    let arrays = pass::<1>(&tracer(&scene, depths(4, 4), samples), 36, 0);
+    let r = |a: f64, b: f64| ((a - b) / (a + b)).powi(2);
+    let p = (1.0 - r(1.0, 1.33)) * (1.0 - r(1.33, 1.5)) * (1.0 - r(1.5, 1.0));
+    // Four standard deviations of a binomial count.
+    let deviation = (p * (1.0 - p) / f64::from(samples)).sqrt();
+    let seen = arrays.steady[0] / (4.0 * f64::exp(-0.5 * 0.6));
+    assert!((seen - p).abs() < 4.0 * deviation, "{seen} {p}");
+    let bin = ((0.33 * 0.6 + 0.5 * 0.4) / 1e-6_f64).round() as usize;
+    assert!((f64::from(arrays.pixel(0)[bin]) / arrays.steady[0] - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_thin_pane_takes_its_reflections_and_no_time() {
+    let mut parts = camera(DVec3::ZERO, DVec3::Z, ONE_RAY);
+    let Bsdf::Dielectric(pane) = glass(1.5) else { panic!("glass") };
+    let pane = Bsdf::ThinDielectric(pane);
+    parts.shapes.push(shape("pane", vec![plate(DVec3::Z * 2.0, DVec3::Y, DVec3::X)], pane));
+    parts.shapes.push(lamp(plate(DVec3::Z * 5.0, DVec3::Y, DVec3::X), 4.0));
+    parts.film.time = Some(time(5.0 - 5e-7, 5.0 + 5e-7, 1));
+    let scene = Scene::assemble(parts).unwrap();
+    let samples = 40_000;
+    let arrays = pass::<1>(&tracer(&scene, depths(2, 2), samples), 37, 0);
+    let p: f64 = 1.0 - 2.0 * 0.04 / 1.04;
+    let deviation = (p * (1.0 - p) / f64::from(samples)).sqrt();
+    assert!((arrays.steady[0] / 4.0 - p).abs() < 4.0 * deviation, "{}", arrays.steady[0]);
+    assert!((f64::from(arrays.pixel(0)[0]) / arrays.steady[0] - 1.0).abs() < 1e-6);
 }
 
 #[test]

@@ -16,6 +16,8 @@ pub enum Emitter {
     Point(Point),
     /// A point that shines into a cone.
     Spot(Spot),
+    /// Parallel light that covers all shapes.
+    Directional(Directional),
     /// A round collimated beam (extension).
     Laser(Laser),
 }
@@ -67,6 +69,22 @@ pub struct Spot {
     /// The medium around it; found from the shapes around it unless given.
     #[serde(default)]
     pub medium: Option<Medium>,
+}
+
+/// `directional`: parallel light, over all shapes. Optical path lengths count from the plane that it
+/// reaches first of the sphere around all shapes (about the middle of their box, 0.1 % larger).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Directional {
+    /// Where the light goes; instead of `to_world`.
+    #[serde(default)]
+    pub direction: Option<Vector>,
+    /// Steps that turn local +z to where the light goes; instead of `direction`.
+    #[serde(default)]
+    pub to_world: Option<Transform>,
+    /// Irradiance across the direction \[W/m^2\]: 0, or from 1e-100 to 1e100.
+    #[serde(default = "unit")]
+    pub irradiance: Colour<Light>,
 }
 
 /// `laser` (extension): a disc that sends a collimated beam along local +z, uniform over the

@@ -22,6 +22,8 @@ pub enum Bsdf {
     Dielectric(Dielectric),
     /// A rough interface between two refractive indices.
     Roughdielectric(RoughDielectric),
+    /// A thin slab.
+    Thindielectric(ThinDielectric),
     /// No surface at all: the boundary of an index-matched medium.
     Null(Null),
     /// Gives each side of an opaque surface its own BSDF.
@@ -143,6 +145,26 @@ pub struct RoughDielectric {
     #[serde(default = "bk7")]
     pub int_ior: Ior,
     /// Refractive index on the side of the normal.
+    #[serde(default = "air")]
+    pub ext_ior: Ior,
+    /// Factor on reflected light, 0 to 1; 1 is physical.
+    #[serde(default = "white")]
+    pub specular_reflectance: Colour<Fraction>,
+    /// Factor on transmitted light, 0 to 1; 1 is physical.
+    #[serde(default = "white")]
+    pub specular_transmittance: Colour<Fraction>,
+}
+
+/// `thindielectric`: a slab of `int_ior` in `ext_ior`, thinner than anything else. All reflections
+/// within it are summed; light passes without a change of direction, and the time that it takes
+/// within the slab is neglected: echoes need a real slab of `dielectric`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ThinDielectric {
+    /// Refractive index of the slab.
+    #[serde(default = "bk7")]
+    pub int_ior: Ior,
+    /// Refractive index around it.
     #[serde(default = "air")]
     pub ext_ior: Ior,
     /// Factor on reflected light, 0 to 1; 1 is physical.

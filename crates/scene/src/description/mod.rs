@@ -27,11 +27,11 @@ mod values;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use emitters::{Area, Emitter, Laser, Point, ShapeEmitter, Spot};
+pub use emitters::{Area, Directional, Emitter, Laser, Point, ShapeEmitter, Spot};
 pub use kinds::Kind;
 pub use materials::{
     Bsdf, Conductor, Dielectric, Diffuse, Distribution, Hg, Homogeneous, Isotropic, Medium, Metal,
-    Null, Phase, RoughConductor, RoughDielectric, Twosided,
+    Null, Phase, RoughConductor, RoughDielectric, ThinDielectric, Twosided,
 };
 pub use refused::{Refused, refused_parameter, refused_plugin};
 pub use schema::{schema, schema_text};

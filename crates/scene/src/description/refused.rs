@@ -21,13 +21,8 @@ struct Group {
 const GROUPS: &[Group] = &[
     Group {
         kind: "a BSDF",
-        instead: "`dielectric` is a smooth interface",
-        names: &["thindielectric"],
-    },
-    Group {
-        kind: "a BSDF",
-        instead: "`diffuse`, `conductor`, `dielectric`, `roughconductor`, `roughdielectric`, `null` \
-            and `twosided` are supported",
+        instead: "`diffuse`, `conductor`, `dielectric`, `roughconductor`, `roughdielectric`, \
+            `thindielectric`, `null` and `twosided` are supported",
         names: &[
             "blendbsdf",
             "bumpmap",
@@ -68,11 +63,11 @@ const GROUPS: &[Group] = &[
     Group {
         kind: "an emitter",
         instead: "`laser` (extension) sends a collimated beam of finite radius",
-        names: &["directional", "directionalarea"],
+        names: &["directionalarea"],
     },
     Group {
         kind: "an emitter",
-        instead: "`area` on a shape, `point`, `spot` and `laser` are supported",
+        instead: "`area` on a shape, `point`, `spot`, `directional` and `laser` are supported",
         names: &[
             "constant",
             "envmap",

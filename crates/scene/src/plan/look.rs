@@ -89,7 +89,7 @@ fn trap(scene: &Scene, shape: &Shape) -> Option<String> {
     Some(format!("shape '{name}' may totally reflect light for ever: {who} is on its denser side"))
 }
 
-/// A laser whose axis the camera looks along (either way) needs the 2D kernel.
+/// Collimated light along which the camera looks (either way) needs the 2D kernel.
 pub(super) fn kernel(scene: &Scene) -> Kernel {
     let (w, h) = (scene.film.width as f64, scene.film.height as f64);
     let forward = scene.sensor.forward();
@@ -99,7 +99,9 @@ pub(super) fn kernel(scene: &Scene) -> Kernel {
         .into_iter()
         .fold(1.0, f64::min);
     let along_view = scene.emitters.iter().any(|e| match e.kind {
-        EmitterKind::Laser { axis, .. } => axis.dot(forward).abs() >= cos_corner,
+        EmitterKind::Laser { axis, .. } | EmitterKind::Directional { axis, .. } => {
+            axis.dot(forward).abs() >= cos_corner
+        }
         _ => false,
     });
     if along_view { Kernel::TwoD } else { Kernel::OneD }

@@ -21,7 +21,7 @@ pub struct Plan {
     pub transport: Transport,
     /// What media there are.
     pub media: Media,
-    /// Shapes that refract.
+    /// Shapes of smooth glass: interfaces and thin slabs.
     pub refracting: Vec<String>,
     /// Shapes that reflect as mirrors.
     pub mirrors: Vec<String>,
@@ -118,7 +118,7 @@ impl Plan {
         let mut plan = Self {
             transport: if is_chromatic(scene) { Transport::Rgb } else { Transport::Mono },
             media: media(scene),
-            refracting: named(&|b| matches!(b, Bsdf::Dielectric(_))),
+            refracting: named(&Bsdf::is_smooth_glass),
             mirrors: named(&Bsdf::is_mirror),
             rough: named(&Bsdf::is_rough),
             diffuse: named(&Bsdf::scatters_diffusely),
@@ -198,7 +198,7 @@ impl Plan {
             let (kernel, why) = match self.kernel {
                 Kernel::TwoD => (
                     "2D kernel",
-                    "a laser lies along the view, where 1/sin of the 1D kernel diverges",
+                    "collimated light lies along the view, where 1/sin of the 1D kernel diverges",
                 ),
                 Kernel::OneD if self.unconnectable.is_empty() => {
                     ("1D kernel", "spread directions: no temporal blur, finite variance")
@@ -294,7 +294,7 @@ impl Plan {
             self.lose(PATH, "light of lasers", &reason);
         }
         let points = emitters(scene, |kind| {
-            matches!(kind, EmitterKind::Point { .. } | EmitterKind::Spot { .. })
+            kind.can_be_connected() && !matches!(kind, EmitterKind::Area { .. })
         });
         let specular = !(self.refracting.is_empty() && self.mirrors.is_empty());
         if seen && integrator.reaches(3) && specular && !points.is_empty() {

@@ -4,6 +4,7 @@
 mod errors;
 mod plan;
 mod properties;
+mod surfaces;
 mod vocabulary;
 
 use std::path::{Path, PathBuf};

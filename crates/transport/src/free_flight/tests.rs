@@ -20,6 +20,7 @@ fn world(media: Vec<Medium>) -> Scene {
     Scene::assemble(SceneParts {
         shapes: vec![],
         media,
+        textures: vec![],
         emitters: vec![],
         background: None,
         sensor: Sensor::perspective(DAffine3::IDENTITY, 40.0, FovAxis::X, 1, 1),

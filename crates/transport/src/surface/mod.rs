@@ -101,7 +101,7 @@ impl<'a> Encounter<'a> {
         Self { scene, hit, direction, before: flight.last_region(), front, normal, bent, carrier }
     }
 
-    /// What may follow. Smooth glass chooses between its two ways here, with the probability of the
+    /// What may follow. Smooth glass (an interface or a thin slab) chooses between its two ways here, with the probability of the
     /// Fresnel reflectance; total internal reflection draws no random number, nor does anything
     /// else.
     #[inline]
@@ -115,6 +115,12 @@ impl<'a> Encounter<'a> {
             Bsdf::Dielectric(glass) => {
                 let outward = if self.front { normal } else { -normal };
                 let way = Crossing::choose(glass, self.direction, outward, rng);
+                let Crossing { direction, factor, eta_ratio, transmitted } = way;
+                let region = if transmitted { self.beyond() } else { self.before };
+                self.turned(Turn { direction, factor, eta_ratio, region }, transmitted)
+            }
+            Bsdf::ThinDielectric(glass) => {
+                let way = Crossing::through_slab(glass, self.direction, normal, rng);
                 let Crossing { direction, factor, eta_ratio, transmitted } = way;
                 let region = if transmitted { self.beyond() } else { self.before };
                 self.turned(Turn { direction, factor, eta_ratio, region }, transmitted)

@@ -113,6 +113,21 @@ fn directions() -> impl Iterator<Item = DVec3> {
     })
 }
 
+/// What goes to a direction, reflectance included.
+fn value(lobe: &impl Lobe<1>, direction: DVec3) -> f64 {
+    (lobe.factor() * lobe.towards(direction).value)[0]
+}
+
+/// A drawn direction and its region; its weight is what its value says.
+fn drawn(lobe: &impl Lobe<1>, rng: &mut Stream) -> Option<(DVec3, Region)> {
+    let drawn = lobe.sample(rng)?;
+    let towards = lobe.towards(drawn.direction);
+    let Spectrum([value]) = towards.value;
+    let stated = drawn.weight[0] * drawn.density;
+    assert!((value - stated).abs() <= 1e-6 * value, "{value} {stated}");
+    Some((drawn.direction, drawn.region))
+}
+
 /// A carrier that comes from the direction `from` meets the point (x, y, 0).
 fn lobe(scene: &Scene, from: DVec3, carrier: Carrier, direction: DVec3) -> f64 {
     let position = DVec3::new(-0.4, 0.1, 0.0) + from;
@@ -120,9 +135,6 @@ fn lobe(scene: &Scene, from: DVec3, carrier: Carrier, direction: DVec3) -> f64 {
     let flight = scene.fly(&vertex, -from);
     let hit = flight.hit.expect("the triangle is met");
     let encounter = Encounter::new(scene, &flight, &hit, carrier);
-    fn value(lobe: &impl Lobe<1>, direction: DVec3) -> f64 {
-        (lobe.factor() * lobe.towards(direction).value)[0]
-    }
     match encounter.respond(&mut Stream::new(1, 2, 3)) {
         Response::Diffuse(lobe) => value(&lobe, direction),
         Response::Rough(lobe) => value(&lobe, direction),
@@ -187,14 +199,6 @@ fn draws_on_bent_surfaces_do_not_leak() {
                 let flight = scene.fly(&vertex, -from);
                 let hit = flight.hit.expect("the triangle is met");
                 let encounter = Encounter::new(&scene, &flight, &hit, carrier);
-                fn drawn(lobe: &impl Lobe<1>, rng: &mut Stream) -> Option<(DVec3, Region)> {
-                    let drawn = lobe.sample(rng)?;
-                    let towards = lobe.towards(drawn.direction);
-                    let Spectrum([value]) = towards.value;
-                    let stated = drawn.weight[0] * drawn.density;
-                    assert!((value - stated).abs() <= 1e-6 * value, "{value} {stated}");
-                    Some((drawn.direction, drawn.region))
-                }
                 let next = match encounter.respond(&mut rng) {
                     Response::Absorbed => None,
                     Response::Turned(turn) => Some((turn.direction, turn.region)),

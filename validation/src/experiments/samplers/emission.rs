@@ -1,9 +1,9 @@
 //! Photons as they leave emitters of every kind.
 //!
 //! * Direction: uniform over the sphere (point), uniform over the cone with a weight (spot), along
-//!   the axis (laser), cosine around the normal (area).
+//!   the axis (laser, directional), cosine around the normal (area).
 //! * Position: uniform over each kind of emitting primitive, over primitives of unequal area by
-//!   area, over the disc of a laser.
+//!   area, over the disc of a laser, over the disc that covers all shapes (directional).
 //! * Weight: the spot's power per angle against intensity · falloff · solid angle, in batches.
 //! * Choice: one of several emitters, by power; points to connect to, by power and area, and the
 //!   density that is stated for them.
@@ -30,6 +30,7 @@ pub(super) fn tests(samples: u64, seed: Draws) -> Result<Vec<Tested>> {
     let mut tests = points(samples, seed)?;
     tests.extend(spot(samples, seed)?);
     tests.extend(laser(samples, seed)?);
+    tests.extend(directional(samples, seed)?);
     for case in cases() {
         tests.extend(area(case, samples, seed)?);
     }
@@ -151,6 +152,44 @@ fn laser(samples: u64, seed: Draws) -> Result<Vec<Tested>> {
         p.direction == AXIS && p.power[0] == 2.0 && (p.position - position).dot(AXIS).abs() < 1e-14
     });
     Ok(vec![positions, Tested::exact("laser: direction and power", sound)])
+}
+
+/// The disc of directional light around a plate of 6 m × 2 m about (1, 0, 0): the box's half
+/// diagonal is √10 m, and 0.1 % more.
+fn directional(samples: u64, seed: Draws) -> Result<Vec<Tested>> {
+    let plate = Planar::new(DVec3::X, 3.0 * DVec3::X, DVec3::Y, Outline::Parallelogram);
+    let (position, radius, irradiance) = (DVec3::ZERO, 0.0, Rgb::splat(2.0));
+    let kind = EmitterKind::Directional { axis: AXIS, irradiance, position, radius };
+    let scene = scene(vec![kind], vec![(vec![Primitive::Planar(plate)], 0.0)])?;
+    let radius = 1.001 * 10.0_f64.sqrt();
+    let centre = DVec3::X - radius * AXIS;
+    let [x, y, _] = axes(AXIS);
+    let grid = Grid { x: [0.0, 1.0], y: [-PI, PI], cells: [21, 31] };
+    let sample = |rng: &mut Stream| {
+        let d = photon(&scene, rng).position - centre;
+        [(d.length() / radius).min(1.0), d.dot(y).atan2(d.dot(x))]
+    };
+    let positions = test("directional: position", grid, samples, seed, sample, |r, _| r / PI);
+    let mut rng = Stream::new(seed.seed, 8, 0);
+    let power = 2.0 * PI * radius * radius;
+    let sound = (0..1000).all(|_| {
+        let p = photon(&scene, &mut rng);
+        let in_plane = (p.position - centre).dot(AXIS).abs() < 1e-12;
+        // What is connected to is what photons bring: the irradiance, from the point of the disc.
+        let receiver = p.position + (1.0 + 4.0 * rng.uniform()) * AXIS;
+        let light = scene.sample_light(&mut rng).expect("the scene has light");
+        let incident = scene.incident::<1>(&light, receiver).expect("it is lit");
+        let from = receiver + incident.distance * incident.direction;
+        let beside = receiver + 2.001 * radius * x;
+        p.direction == AXIS
+            && (p.power[0] / power - 1.0).abs() < 1e-12
+            && in_plane
+            && (from - p.position).length() < 1e-12
+            && (incident.flux[0] / light.pdf - 2.0).abs() < 1e-12
+            && scene.incident::<1>(&light, beside).is_none()
+            && scene.incident::<1>(&light, p.position - AXIS).is_none()
+    });
+    Ok(vec![positions, Tested::exact("directional: direction, power and connections", sound)])
 }
 
 /// One emitting primitive: positions, directions, and points to connect to.

@@ -18,7 +18,7 @@ const LOWER: Grid = Grid::band([-1.0, 0.0]);
 
 pub(super) fn tests(samples: u64, seed: Draws) -> Vec<Tested> {
     let mut tests = Vec::new();
-    for (alpha, cosine) in [(0.1, 0.9), (0.3, 0.2), (0.6, 0.6), (1.0, 0.05), (1.0, 1.0)] {
+    for (alpha, cosine) in [(0.3, 0.2), (0.6, 0.6), (1.0, 0.05)] {
         let (ggx, from) = (Ggx::new(alpha), world(cosine, 0.7));
         tests.push(test(
             format!("visible normals, alpha = {alpha}, cosine {cosine}"),
@@ -29,7 +29,7 @@ pub(super) fn tests(samples: u64, seed: Draws) -> Vec<Tested> {
             |z, phi| visible(alpha, from, world(z, phi)),
         ));
     }
-    for (alpha, cosine) in [(0.2, 0.8), (0.5, 0.4), (1.0, 0.7)] {
+    for (alpha, cosine) in [(0.4, 0.8), (1.0, 0.4)] {
         tests.push(metal(alpha, world(cosine, -1.2), samples, seed));
         for (before, beyond) in [(1.0, 1.5), (1.5, 1.0)] {
             tests.extend(glass(alpha, world(cosine, 2.0), [before, beyond], samples, seed));

@@ -7,6 +7,7 @@ mod interface;
 mod lamp;
 mod room;
 mod rough;
+mod texture;
 
 use std::sync::Arc;
 
@@ -101,5 +102,6 @@ pub fn all() -> Vec<Arc<dyn Case>> {
         Arc::new(room::Room),
         Arc::new(interface::Interface),
         Arc::new(rough::Rough),
+        Arc::new(texture::Textured),
     ]
 }

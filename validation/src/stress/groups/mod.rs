@@ -3,6 +3,7 @@
 pub mod light;
 pub mod media;
 pub mod places;
+pub mod rough;
 pub mod scale;
 pub mod sizes;
 pub mod time;
@@ -18,6 +19,7 @@ pub fn all() -> Vec<Case> {
         places::cases(),
         light::cases(),
         sizes::cases(),
+        rough::cases(),
     ];
     groups.into_iter().flatten().collect()
 }

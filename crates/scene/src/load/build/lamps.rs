@@ -21,6 +21,7 @@ impl<'a> Builder<'a> {
         let (kind, medium) = match emitter {
             words::Emitter::Point(lamp) => (point(lamp, node)?, &lamp.medium),
             words::Emitter::Spot(lamp) => (spot(lamp, node)?, &lamp.medium),
+            words::Emitter::Directional(lamp) => (directional(lamp, node)?, &None),
             words::Emitter::Laser(lamp) => (laser(lamp, node)?, &lamp.medium),
         };
         let stated_medium = medium
@@ -66,6 +67,23 @@ fn spot(lamp: &words::Spot, node: &Node) -> Outcome<EmitterKind> {
         cos_cutoff: cutoff.to_radians().cos(),
         cos_beam: beam.to_radians().cos(),
     })
+}
+
+fn directional(lamp: &words::Directional, node: &Node) -> Outcome<EmitterKind> {
+    let axis = match (lamp.direction, &lamp.to_world) {
+        (None, None) => DVec3::Z,
+        (Some(direction), None) => DVec3::from(direction).try_normalize().ok_or_else(|| {
+            Trouble::new("`direction` has no length").at(node.get_or_self("direction"))
+        })?,
+        (None, Some(steps)) => placed(steps, node)?.1,
+        (Some(_), Some(_)) => {
+            return Err(Trouble::new("`direction` and `to_world` exclude each other")
+                .at(node.get_or_self("to_world")));
+        }
+    };
+    let irradiance = lamp.irradiance.rgb();
+    // Its disc is found when all shapes are known.
+    Ok(EmitterKind::Directional { axis, irradiance, position: DVec3::ZERO, radius: 0.0 })
 }
 
 fn laser(lamp: &words::Laser, node: &Node) -> Outcome<EmitterKind> {

@@ -58,6 +58,12 @@ impl<'a> Builder<'a> {
                 Surface::Reflects(Reflector::Rough(rough::metal(c, node)?))
             }
             words::Bsdf::Roughdielectric(d) => Surface::Passes(rough::glass(d, node)?),
+            words::Bsdf::Thindielectric(d) => Surface::Passes(Bsdf::ThinDielectric(Dielectric {
+                interior_eta: d.int_ior.get(),
+                exterior_eta: d.ext_ior.get(),
+                reflectance: d.specular_reflectance.rgb(),
+                transmittance: d.specular_transmittance.rgb(),
+            })),
             words::Bsdf::Null(_) => Surface::Passes(Bsdf::Null),
             words::Bsdf::Twosided(sides) => {
                 let front = self.side(&sides.bsdf, node.get_or_self("bsdf"), way)?;

@@ -105,9 +105,10 @@ impl<'a> Builder<'a> {
                 "move it to one side, by more than 1e-9 of the size of the scene"
             }
             AssembleError::AtEmitter { .. } => "move one of them",
+            AssembleError::NothingToCover { .. } => "a `laser` has a size and a place of its own",
             AssembleError::Coincident { .. } => {
                 "move or shrink one of them; a sheet with two sides is one shape with a `twosided` \
-                 BSDF; a medium that walls close in needs no boundary of its own: make it the \
+                 BSDF; a liquid that touches glass has one `dielectric` between the two; a medium that walls close in needs no boundary of its own: make it the \
                  `background`"
             }
             AssembleError::NullBetweenUnequalIndices { .. } => {

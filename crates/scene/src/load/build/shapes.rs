@@ -27,7 +27,7 @@ impl<'a> Builder<'a> {
         let primitives = self.primitives(shape, &to_world, attributes.flip_normals, node)?;
         let coordinates = coordinates(shape, &to_world);
         let bsdf = self.shape_bsdf(&attributes, node, &coordinates)?;
-        self.check_uv(&bsdf, &coordinates, &primitives, node)?;
+        check_uv(&bsdf, &coordinates, &primitives, node)?;
         let radiance = attributes.emitter.map(|ShapeEmitter::Area(area)| area.radiance.rgb());
         if radiance.is_some() && bsdf == Bsdf::Null {
             return Err(Trouble::new("a `null` surface cannot shine")
@@ -51,26 +51,6 @@ impl<'a> Builder<'a> {
             None => self.diffuse(&words::Diffuse::default().reflectance, node, None)?,
         };
         Ok(Bsdf::Opaque { front, back: Reflector::Black })
-    }
-
-    /// A textured mesh needs texture coordinates.
-    fn check_uv(
-        &self,
-        bsdf: &Bsdf,
-        coordinates: &Coordinates,
-        primitives: &[Primitive],
-        node: &Node,
-    ) -> Outcome<()> {
-        let textured = |r: &Reflector| matches!(r, Reflector::Textured(_));
-        let Bsdf::Opaque { front, back } = bsdf else { return Ok(()) };
-        let flat = |p: &Primitive| matches!(p, Primitive::Planar(t) if !t.has_vertex_uv());
-        let wanted = (textured(front) || textured(back)) && *coordinates == Coordinates::Vertices;
-        if wanted && primitives.iter().any(flat) {
-            return Err(Trouble::new("the mesh file has no texture coordinates for its texture")
-                .at(node.get_or_self("filename"))
-                .hint("`vt` in OBJ files; `u` and `v`, or `s` and `t`, in PLY files"));
-        }
-        Ok(())
     }
 
     fn boundary(
@@ -212,6 +192,25 @@ fn cylinder(
     let radius = cylinder.radius.get() * scale.abs();
     within_limits(&[p0, p1], &[radius, (p1 - p0).length()], node)?;
     Ok(vec![Primitive::Cylinder(Cylinder::new(p0, p1, radius, flip))])
+}
+
+/// A textured mesh needs texture coordinates.
+fn check_uv(
+    bsdf: &Bsdf,
+    coordinates: &Coordinates,
+    primitives: &[Primitive],
+    node: &Node,
+) -> Outcome<()> {
+    let textured = |r: &Reflector| matches!(r, Reflector::Textured(_));
+    let Bsdf::Opaque { front, back } = bsdf else { return Ok(()) };
+    let flat = |p: &Primitive| matches!(p, Primitive::Planar(t) if !t.has_vertex_uv());
+    let wanted = (textured(front) || textured(back)) && *coordinates == Coordinates::Vertices;
+    if wanted && primitives.iter().any(flat) {
+        return Err(Trouble::new("the mesh file has no texture coordinates for its texture")
+            .at(node.get_or_self("filename"))
+            .hint("`vt` in OBJ files; `u` and `v`, or `s` and `t`, in PLY files"));
+    }
+    Ok(())
 }
 
 /// Mitsuba's texture coordinates of a shape.

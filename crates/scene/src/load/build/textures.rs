@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine2, DMat2};
+use glam::{DAffine2, DMat2, DVec3};
 
 use super::Builder;
 use crate::Reflector;
@@ -39,21 +39,19 @@ impl Builder<'_> {
 
     fn bitmap(&mut self, bitmap: &words::Bitmap, node: &Node) -> Outcome<Pattern> {
         let key = (self.directory.join(&bitmap.filename), bitmap.raw);
-        let image = match self.images.get(&key) {
-            Some(known) => known.clone(),
-            None => {
-                let image = Bitmap::load(&key.0, key.1).map_err(|problem| {
-                    let name = names::shortened(&bitmap.filename);
-                    let hint =
-                        || format!("images are looked for in `{}`", self.directory.display());
-                    Trouble::new(format!("cannot use the image file `{name}`: {problem}"))
-                        .at(node.get_or_self("filename"))
-                        .maybe_hint((!key.0.exists()).then(hint))
-                })?;
-                let image = Arc::new(image);
-                self.images.insert(key, image.clone());
-                image
-            }
+        let image = if let Some(known) = self.images.get(&key) {
+            known.clone()
+        } else {
+            let image = Bitmap::load(&key.0, key.1).map_err(|problem| {
+                let name = names::shortened(&bitmap.filename);
+                let hint = || format!("images are looked for in `{}`", self.directory.display());
+                Trouble::new(format!("cannot use the image file `{name}`: {problem}"))
+                    .at(node.get_or_self("filename"))
+                    .maybe_hint((!key.0.exists()).then(hint))
+            })?;
+            let image = Arc::new(image);
+            self.images.insert(key, image.clone());
+            image
         };
         let filter = match bitmap.filter_type {
             words::FilterType::Bilinear => Filter::Bilinear,
@@ -71,7 +69,7 @@ impl Builder<'_> {
 /// What the steps do to the plane of u and v.
 fn plane(steps: &words::Transform, node: &Node) -> Outcome<DAffine2> {
     let space = transform::to_affine(steps, node)?;
-    let [x, y] = [space.matrix3.x_axis, space.matrix3.y_axis].map(|axis| axis.truncate());
+    let [x, y] = [space.matrix3.x_axis, space.matrix3.y_axis].map(DVec3::truncate);
     let matrix = DMat2::from_cols(x, y);
     Ok(DAffine2::from_mat2_translation(matrix, space.translation.truncate()))
 }
