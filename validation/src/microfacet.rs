@@ -55,8 +55,8 @@ pub fn refracting(from: DVec3, to: DVec3, [before, beyond]: [f64; 2]) -> Option<
     (a > 0.0 && b < 0.0).then_some((half, jacobian))
 }
 
-/// Walter's BTDF for light that comes from `from` (z > 0) and leaves to `to` (z < 0): radiance there
-/// per irradiance.
+/// Walter's BTDF for light that comes from `from` (z > 0) and leaves to `to` (z < 0): radiance
+/// there per irradiance.
 pub fn transmission(alpha: f64, from: DVec3, to: DVec3, eta: [f64; 2]) -> f64 {
     let Some((half, jacobian)) = refracting(from, to, eta) else { return 0.0 };
     let cosine = from.dot(half);

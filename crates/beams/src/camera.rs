@@ -1,9 +1,9 @@
 //! The camera's side: rays from the eye that gather beams, and what they see on surfaces.
 //!
 //! A camera path follows null boundaries (within a flight), mirrors and glass (one choice by the
-//! Fresnel reflectance; radiance changes by (η before/η behind)² where it crosses) and rough surfaces
-//! ([`crate::rough`]) to the first diffuse one. On each span of a medium it gathers beams. At the
-//! end it adds
+//! Fresnel reflectance; radiance changes by (η before/η behind)² where it crosses) and rough
+//! surfaces ([`crate::rough`]) to the first diffuse one. On each span of a medium it gathers beams.
+//! At the end it adds
 //!
 //! * emission, exact in time: unbiased;
 //! * direct light by next-event estimation through null boundaries: unbiased;
@@ -12,8 +12,9 @@
 //!
 //! Light whose last scattering is in a medium comes from the beams alone, blurred by their kernel.
 //! Each light path thus belongs to exactly one part, by its last scattering event that is neither
-//! specular nor rough: none (emission), a medium (beams), a diffuse surface lit straight by an emitter that
-//! can be connected to (next-event estimation), a diffuse surface lit otherwise (photons).
+//! specular nor rough: none (emission), a medium (beams), a diffuse surface lit straight by an
+//! emitter that can be connected to (next-event estimation), a diffuse surface lit otherwise
+//! (photons).
 //!
 //! The parts differ in cost and variance, so a pass may start more paths for one than for another:
 //! path i gathers beams if i < `gather_samples`, and ends on a surface if i < `surface_samples`.

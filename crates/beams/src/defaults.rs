@@ -2,8 +2,9 @@
 //!
 //! A radius of about a pixel at the distance of what is looked at blurs no more than the image
 //! does; but not more than a small part of what is looked at, or a coarse film would blur it all.
-//! The rays follow mirrors, glass and rough surfaces. Those that see nothing that the radius is for do not count,
-//! so that a large ground plane or a distant wall matters as much as the image shows of it.
+//! The rays follow mirrors, glass and rough surfaces. Those that see nothing that the radius is for
+//! do not count, so that a large ground plane or a distant wall matters as much as the image shows
+//! of it.
 
 use std::collections::BTreeMap;
 

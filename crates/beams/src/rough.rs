@@ -1,9 +1,9 @@
 //! Camera paths at rough surfaces.
 //!
 //! A rough surface spreads too little for a density of photons, and too much for one ray: the path
-//! goes on in a direction drawn from it, gathers beams on its further flights, and ends on a diffuse
-//! surface as it would behind a mirror. Only light that comes straight from an emitter has two
-//! ways to be found, a connection and an emitter that the drawn direction meets; the balance
+//! goes on in a direction drawn from it, gathers beams on its further flights, and ends on a
+//! diffuse surface as it would behind a mirror. Only light that comes straight from an emitter has
+//! two ways to be found, a connection and an emitter that the drawn direction meets; the balance
 //! heuristic (Veach 1997, section 9.2) weighs n connections of density p_L per steradian and one
 //! direction of density p:
 //!
@@ -13,8 +13,8 @@
 //!
 //! Photons bounce off rough surfaces, and are not kept there: each light path still has one place,
 //! by its last scattering event that is neither specular nor rough. Two kinds of light that photons
-//! could bring are not found: a laser's on a rough surface, and a point's that comes there by a mirror
-//! or through glass. The plan says so.
+//! could bring are not found: a laser's on a rough surface, and a point's that comes there by a
+//! mirror or through glass. The plan says so.
 
 use tpb_optics::{Spectrum, Stream};
 use tpb_scene::{Hit, Vertex};

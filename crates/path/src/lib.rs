@@ -17,8 +17,8 @@
 //! * Either the surface or one point of the medium is chosen by a free flight
 //!   (with colour: a mixture over channels, weighted by the path's own throughput).
 //! * There a point on a light is connected to (next-event estimation; through rough glass too), and
-//!   a direction is drawn from phase function or BSDF; where that direction meets an emitter, both strategies are
-//!   weighted by the balance heuristic (Veach 1997, section 9.2).
+//!   a direction is drawn from phase function or BSDF; where that direction meets an emitter, both
+//!   strategies are weighted by the balance heuristic (Veach 1997, section 9.2).
 //! * On flights seen from the eye, directly or through mirrors and glass, a third strategy draws
 //!   the distance t by equiangular sampling towards a light point y that is chosen first (Kulla &
 //!   Fajardo 2012). In the common measure (t, y) the three densities are

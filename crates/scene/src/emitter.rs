@@ -1,8 +1,8 @@
 //! Emitters, seen from both ends: photons leave them, and cameras' paths connect to them.
 //!
 //! Powers and intensities follow Mitsuba: `point` and `spot` in W/sr, `area` in W m⁻² sr⁻¹ from the
-//! side of the normal only, `directional` in W/m², our `laser` in W. With pulses, read J for W. Every
-//! pulse leaves the emitter's surface at OPL 0.
+//! side of the normal only, `directional` in W/m², our `laser` in W. With pulses, read J for W.
+//! Every pulse leaves the emitter's surface at OPL 0.
 //!
 //! **Directional light** has no surface: it starts, at OPL 0, on the disc that touches the sphere
 //! around all shapes from the side that the light comes from. The sphere is about the middle of the

@@ -8,9 +8,9 @@
 //! * [`PhotonTracer`]: photons from the emitters to their ends; a [`PhotonVisitor`] takes from them
 //!   what its method needs.
 //!
-//! Camera paths and photons use the same four: media, surfaces and roulette treat light and importance
-//! alike. What differs stays with the methods: radiance scales with η² on refraction, fluxes do
-//! not.
+//! Camera paths and photons use the same four: media, surfaces and roulette treat light and
+//! importance alike. What differs stays with the methods: radiance scales with η² on refraction,
+//! fluxes do not.
 
 mod carrier;
 mod free_flight;

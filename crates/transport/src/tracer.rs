@@ -2,9 +2,9 @@
 //!
 //! A photon flies through null boundaries to the next surface, unless its free flight
 //! ([`FreeFlight`]) ends in a collision on the way. A collision leaves the albedo's share, a diffuse
-//! surface its reflectance's; smooth glass reflects with the probability of the Fresnel reflectance;
-//! rough surfaces draw one of their microfacets as they are seen.
-//! Fluxes do not scale with η² on refraction. Media that only absorb weigh photons, and end none.
+//! surface its reflectance's; smooth glass reflects with the probability of the Fresnel
+//! reflectance; rough surfaces draw one of their microfacets as they are seen. Fluxes do not scale
+//! with η² on refraction. Media that only absorb weigh photons, and end none.
 //!
 //! **Depth.** After n scattering events (of any kind but null crossings) a photon's next flight
 //! adds paths of depth n + 2. It goes on while [`IntegratorSpec::reaches`] allows that depth;

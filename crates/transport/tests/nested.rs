@@ -1,9 +1,9 @@
 //! A liquid in a glass: three kinds of interfaces, none upon another.
 //!
-//! The cup is a box of glass (index 1.5), open at its top, with a liquid (1.33) in it. Where liquid and
-//! glass touch, *one* interface stands between the two indices; it is not the glass's inner surface
-//! with the liquid's own surface upon it. Photons from a lamp within the liquid must find every
-//! region where geometry says that it is, and take as long as its index says.
+//! The cup is a box of glass (index 1.5), open at its top, with a liquid (1.33) in it. Where liquid
+//! and glass touch, *one* interface stands between the two indices; it is not the glass's inner
+//! surface with the liquid's own surface upon it. Photons from a lamp within the liquid must find
+//! every region where geometry says that it is, and take as long as its index says.
 
 use glam::{DAffine3, DVec3};
 use tpb_optics::{Coefficients, Phase, Rgb, Stream};

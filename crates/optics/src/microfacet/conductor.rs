@@ -4,8 +4,9 @@
 //! f(a → b) = F(a·h) G2 D(h) / (4 a_z b_z),     h = (a + b)/|a + b|     (Walter et al. 2007, eq. 20)
 //! ```
 //!
-//! Drawn by visible normals, the weight f b_z/density is F G2/G1. Light that a microfacet sends into
-//! another is lost (single scattering): a perfect metal of α = 1 reflects 0.5 to 0.9 of the light.
+//! Drawn by visible normals, the weight f b_z/density is F G2/G1. Light that a microfacet sends
+//! into another is lost (single scattering): a perfect metal of α = 1 reflects 0.5 to 0.9 of the
+//! light.
 
 use glam::DVec3;
 

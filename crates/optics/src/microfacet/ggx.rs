@@ -1,6 +1,7 @@
 //! The Trowbridge-Reitz distribution of microfacets ("GGX") with Smith's masking and shadowing.
 //!
-//! Directions are unit vectors in a frame whose +z is the surface's normal. With the roughness α and
+//! Directions are unit vectors in a frame whose +z is the surface's normal. With the roughness α
+//! and
 //!
 //! ```text
 //! r(w) = √(w_z² + α² (w_x² + w_y²))
@@ -204,7 +205,8 @@ mod tests {
         }
     }
 
-    /// Γ(x)/Γ(x + y) of whole numbers is a product; across the border of the two forms, and far out.
+    /// Γ(x)/Γ(x + y) of whole numbers is a product; across the border of the two forms, and far
+    /// out.
     #[test]
     fn beta_is_right_for_small_and_large_arguments() {
         for (x, y) in [(1_u32, 1_u32), (4, 3), (29, 5), (30, 5), (31, 30), (1000, 7)] {

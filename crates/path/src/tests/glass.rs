@@ -79,8 +79,8 @@ fn across(name: &str, z: f64, (before, behind): (f64, f64)) -> ShapePart {
     shape(name, vec![plate(DVec3::Z * z, 4.0 * DVec3::Y, 4.0 * DVec3::X)], bsdf)
 }
 
-/// A lamp at distance 5 seen through liquid (1.33, thickness 0.6, absorbing) on glass (1.5, 0.4), with
-/// one interface between the two.
+/// A lamp at distance 5 seen through liquid (1.33, thickness 0.6, absorbing) on glass (1.5, 0.4),
+/// with one interface between the two.
 #[test]
 fn liquid_on_glass_delays_by_both_indices() {
     let mut parts = camera(DVec3::ZERO, DVec3::Z, ONE_RAY);

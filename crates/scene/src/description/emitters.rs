@@ -71,8 +71,8 @@ pub struct Spot {
     pub medium: Option<Medium>,
 }
 
-/// `directional`: parallel light, over all shapes. Optical path lengths count from the plane that it
-/// reaches first of the sphere around all shapes (about the middle of their box, 0.1 % larger).
+/// `directional`: parallel light, over all shapes. Optical path lengths count from the plane that
+/// it reaches first of the sphere around all shapes (about the middle of their box, 0.1 % larger).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Directional {

@@ -67,8 +67,8 @@ pub enum Metal {
     None,
 }
 
-/// `roughconductor`: a metal of microfacets on the side of the normal; the other side is black. What
-/// one microfacet sends into another is lost, as in Mitsuba: the rougher, the darker.
+/// `roughconductor`: a metal of microfacets on the side of the normal; the other side is black.
+/// What one microfacet sends into another is lost, as in Mitsuba: the rougher, the darker.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RoughConductor {

@@ -64,8 +64,8 @@ impl Primitive {
         }
     }
 
-    /// The normal that shading uses at a point of the primitive, where it is not [`Primitive::normal`]:
-    /// that of a mesh's vertices. It is on the same side.
+    /// The normal that shading uses at a point of the primitive, where it is not
+    /// [`Primitive::normal`]: that of a mesh's vertices. It is on the same side.
     #[inline]
     pub fn shading_normal(&self, position: DVec3) -> Option<DVec3> {
         match self {

@@ -1,7 +1,7 @@
 //! Images as textures: PNG (sRGB, made linear) and OpenEXR (linear).
 //!
-//! Texel (i, j) of an image of w × h has its middle at ((i + ½)/w, (j + ½)/h), its first row at v = 0.
-//! An alpha channel is not read.
+//! Texel (i, j) of an image of w × h has its middle at ((i + ½)/w, (j + ½)/h), its first row at v =
+//! 0. An alpha channel is not read.
 
 use std::fs::{self, File};
 use std::io::BufReader;

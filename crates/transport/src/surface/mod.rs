@@ -1,8 +1,8 @@
 //! What becomes of a carrier (a photon's power, or a camera path's importance) at a surface.
 //!
 //! An [`Encounter`] is the meeting of one carrier with one surface; its [`Response`] is what may
-//! follow: nothing, one direction (mirrors and smooth glass), or a [`Lobe`] of many. All methods ask
-//! here, so that a material is written once.
+//! follow: nothing, one direction (mirrors and smooth glass), or a [`Lobe`] of many. All methods
+//! ask here, so that a material is written once.
 //!
 //! **Conventions.** Fluxes and importance are carried alike: a lobe's value f |cosθ| says what part
 //! of the carrier goes on per steradian. *Radiance* along a camera's ray changes by (η before/η
@@ -18,11 +18,11 @@
 //! |k·n_s| |w·n_g| / (|k·n_g| |w·n_s|)
 //! ```
 //!
-//! for the camera's paths and photons to see the same image. Guards against light that leaks through
-//! the surface: what arrives in front of n_g but behind n_s is absorbed, and so is what would go on
-//! on one side for n_g but on the other for n_s. Surfaces look black where they are seen so, at the
-//! silhouettes of coarse meshes. Energy is not kept exactly by shading normals; what the photons'
-//! factors add or take is in the ledger, as (negative) absorption.
+//! for the camera's paths and photons to see the same image. Guards against light that leaks
+//! through the surface: what arrives in front of n_g but behind n_s is absorbed, and so is what
+//! would go on on one side for n_g but on the other for n_s. Surfaces look black where they are
+//! seen so, at the silhouettes of coarse meshes. Energy is not kept exactly by shading normals;
+//! what the photons' factors add or take is in the ledger, as (negative) absorption.
 
 mod glass;
 mod lobe;
@@ -101,9 +101,9 @@ impl<'a> Encounter<'a> {
         Self { scene, hit, direction, before: flight.last_region(), front, normal, bent, carrier }
     }
 
-    /// What may follow. Smooth glass (an interface or a thin slab) chooses between its two ways here, with the probability of the
-    /// Fresnel reflectance; total internal reflection draws no random number, nor does anything
-    /// else.
+    /// What may follow. Smooth glass (an interface or a thin slab) chooses between its two ways
+    /// here, with the probability of the Fresnel reflectance; total internal reflection draws no
+    /// random number, nor does anything else.
     #[inline]
     pub fn respond(&self, rng: &mut Stream) -> Response {
         if self.bent.is_some_and(|bent| self.direction.dot(bent) >= 0.0) {

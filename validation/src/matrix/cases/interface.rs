@@ -1,13 +1,14 @@
 //! Rough glass, lit from within by a lamp: one refraction.
 //!
 //! The interface lies across the axis at the distance h; behind it is glass of index η that only
-//! absorbs, with a spot of intensity 1/(4π) in it at p, whose full cone covers all that is seen. Along the ray of slant w the interface is met at
-//! d = h w, at the distance r from the lamp, under the cosine c = (p_z − h)/r:
+//! absorbs, with a spot of intensity 1/(4π) in it at p, whose full cone covers all that is seen.
+//! Along the ray of slant w the interface is met at d = h w, at the distance r from the lamp, under
+//! the cosine c = (p_z − h)/r:
 //!
 //! > L = f_t · c/(4π r²) · exp(−sigma_t r), at the instant d + η r,
 //!
-//! with the BTDF f_t in the textbook's form ([`crate::microfacet`]). Radiance is lower by η² outside:
-//! that is in f_t.
+//! with the BTDF f_t in the textbook's form ([`crate::microfacet`]). Radiance is lower by η²
+//! outside: that is in f_t.
 
 use std::f64::consts::PI;
 

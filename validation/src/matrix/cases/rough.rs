@@ -1,8 +1,8 @@
-//! All orders among rough surfaces: a box of fog with a null boundary, in it a rough metal floor and
-//! a ball of rough glass, a spot above.
+//! All orders among rough surfaces: a box of fog with a null boundary, in it a rough metal floor
+//! and a ball of rough glass, a spot above.
 //!
-//! No exact value is known. Nothing is specular here, so that path tracing finds all light, and so do
-//! photons that are connected to the eye: through the ball, off the floor, in the fog.
+//! No exact value is known. Nothing is specular here, so that path tracing finds all light, and so
+//! do photons that are connected to the eye: through the ball, off the floor, in the fog.
 
 use glam::DVec3;
 use tpb_optics::Rgb;

@@ -1,8 +1,8 @@
 //! All orders under parallel light: a box of fog with a null boundary, in it a textured floor and a
 //! coarse round mesh with smooth normals.
 //!
-//! No exact value is known. Shading normals are asymmetric: that photons and camera paths agree here
-//! is a test of the photons' factor.
+//! No exact value is known. Shading normals are asymmetric: that photons and camera paths agree
+//! here is a test of the photons' factor.
 
 use std::sync::Arc;
 

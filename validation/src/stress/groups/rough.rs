@@ -24,8 +24,8 @@ pub(super) fn cases() -> Vec<Case> {
                 let work = Work { samples: 4000, photons: 20_000, ..Work::LITTLE };
                 let image = Shot::new(&world, method, &work)?.render(setup.seed, 1)?;
                 let mean = image.total() / 4.0;
-                // What is lost is lost at grazing angles, connections have their noise; the light tracer sees lamps only where
-                // glass does not stand before them.
+                // What is lost is lost at grazing angles, connections have their noise; the light
+                // tracer sees lamps only where glass does not stand before them.
                 let sound = method == Method::Light || (0.99..=1.001).contains(&mean);
                 Ok(Finding::exact(sound, format!("mean radiance {mean}")))
             },

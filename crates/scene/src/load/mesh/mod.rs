@@ -1,13 +1,13 @@
 //! Triangle meshes from files.
 //!
 //! A mesh becomes a list of triangles in world coordinates. Polygons are cut into fans about their
-//! first vertex, as Mitsuba cuts them. A broken mesh is an error that names the file and the face: a
-//! hole in a boundary of a medium would otherwise show up as light in the wrong place.
+//! first vertex, as Mitsuba cuts them. A broken mesh is an error that names the file and the face:
+//! a hole in a boundary of a medium would otherwise show up as light in the wrong place.
 //!
-//! **Normals.** Faces are oriented by the right-hand rule; that decides sides. Unless `face_normals`
-//! is given, shading uses the normals of the vertices: those of the file, or, where it has none, the
-//! mean of the faces' around each vertex, weighted by their angles there (Thürmer & Wüthrich 1998,
-//! "Computing Vertex Normals from Polygonal Facets"), as Mitsuba's loaders do.
+//! **Normals.** Faces are oriented by the right-hand rule; that decides sides. Unless
+//! `face_normals` is given, shading uses the normals of the vertices: those of the file, or, where
+//! it has none, the mean of the faces' around each vertex, weighted by their angles there (Thürmer
+//! & Wüthrich 1998, "Computing Vertex Normals from Polygonal Facets"), as Mitsuba's loaders do.
 
 mod obj;
 mod ply;
