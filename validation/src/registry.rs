@@ -39,7 +39,7 @@ fn sound(effort: Effort) -> Experiments {
     [
         calibration::all(),
         tables::all(),
-        samplers::all(),
+        samplers::all(effort),
         kernels::all(),
         energy::all(),
         standard_error::all(),

@@ -31,7 +31,7 @@ pub(crate) struct ErrorTimeArgs {
     #[arg(long, value_name = "SECONDS", default_value = "8", value_parser = seconds)]
     time: Duration,
     /// Runs of each method, at least 3
-    #[arg(long, value_name = "N", default_value_t = 8)]
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u64).range(3..))]
     replicates: u64,
     /// Seed of the first run
     #[arg(long, default_value_t = 1)]

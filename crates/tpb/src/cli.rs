@@ -10,7 +10,7 @@ use tpb_film::Pulse;
 use crate::values;
 use crate::viewer::{CompareArgs, ViewArgs};
 
-/// Renders light in flight: transient photon beams and a transient path tracer.
+/// Renders light in flight: transient photon beams, a path tracer, a light tracer; and analytic curves.
 #[derive(Debug, Parser)]
 #[command(name = "tpb", version, max_term_width = 100)]
 pub(crate) struct Cli {

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Drawn by visible normals, the weight f b_z/density is F G2/G1. Light that a microfacet sends
-//! into another is lost (single scattering): a perfect metal of α = 1 reflects 0.5 to 0.9 of the
-//! light.
+//! into another is lost (single scattering): at normal incidence a perfect metal reflects 0.99 of the
+//! light for α = 0.1, 0.88 for 0.3, 0.69 for 0.5, and 0.31 for 1.
 
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! The Trowbridge-Reitz distribution of microfacets ("GGX") with Smith's masking and shadowing.
 //!
-//! Directions are unit vectors in a frame whose +z is the surface's normal. With the roughness α
-//! and
+//! Directions are unit vectors in a frame whose +z is the surface's normal. With the
+//! roughness α and
 //!
 //! ```text
 //! r(w) = √(w_z² + α² (w_x² + w_y²))

@@ -118,13 +118,27 @@ fn input(text: &str) -> Result<(String, Value), Failure> {
     let value = serde_json::from_str(value).or_else(|error| {
         let word = value.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         let starts = value.starts_with(|c: char| c.is_ascii_alphabetic());
-        if word && starts {
+        if word && ["nan", "inf", "infinity"].contains(&value.to_ascii_lowercase().as_str()) {
+            Err(Failure::input(format!("--set {text}: expected a finite number")))
+        } else if word && starts {
             Ok(json!(value))
         } else {
             Err(Failure::input(format!("--set {text}: the value is not JSON: {error}")))
         }
     })?;
     Ok((key.trim().to_owned(), value))
+}
+
+/// Inputs that are whole numbers.
+const COUNTS: [&str; 4] = ["order", "chords", "echo", "scatterings"];
+
+/// The whole numbers of a range, both ends included; the default where it has none.
+fn whole_steps(range: &str) -> usize {
+    let ends = range.split_once("..").and_then(|(from, to)| {
+        Some((from.trim().parse::<i64>().ok()?, to.trim().parse::<i64>().ok()?))
+    });
+    let steps = ends.and_then(|(from, to)| usize::try_from(to.checked_sub(from)?).ok());
+    steps.map_or(DEFAULT_COUNT, |steps| steps.saturating_add(1).min(MAX_COUNT))
 }
 
 impl Sweep {
@@ -138,6 +152,7 @@ impl Sweep {
         };
         let (key, range) = text.split_once('=').ok_or_else(|| wrong("expected KEY=A..B:N"))?;
         let (range, count) = match range.rsplit_once(':') {
+            None if COUNTS.contains(&key.trim()) => (range, whole_steps(range)),
             None => (range, DEFAULT_COUNT),
             Some((range, count)) => {
                 let count: Option<usize> = count.trim().parse().ok();
@@ -162,7 +177,13 @@ impl Sweep {
             let points = edges.windows(2).map(<[f64]>::to_vec).collect();
             return Ok(Self { keys: vec!["t0".to_owned(), "t1".to_owned()], points });
         }
-        let points = spaced(from, to, count, logarithmic).into_iter().map(|x| vec![x]).collect();
+        let one_by_one = COUNTS.contains(&key) && from + (count - 1) as f64 == to;
+        let values = if one_by_one {
+            (0..count).map(|i| from + i as f64).collect()
+        } else {
+            spaced(from, to, count, logarithmic)
+        };
+        let points = values.into_iter().map(|x| vec![x]).collect();
         Ok(Self { keys: vec![key.to_owned()], points })
     }
 }
@@ -223,11 +244,17 @@ mod tests {
     }
 
     #[test]
+    fn counts_are_swept_one_by_one() {
+        let sweep = Sweep::new("order=1..3", false).unwrap();
+        assert_eq!(sweep.points, [[1.0], [2.0], [3.0]]);
+    }
+
+    #[test]
     fn inputs_are_json_or_words() {
         assert_eq!(input("order=all").unwrap().1, json!("all"));
         assert_eq!(input("r = 2e-3").unwrap(), ("r".to_owned(), json!(2e-3)));
         assert_eq!(input("d=[0,0,1]").unwrap().1, json!([0, 0, 1]));
-        for bad in ["r", "r=", "r=1,2", "d=[0", "r=1e999", "r=1m"] {
+        for bad in ["r=NaN", "r=inf", "r", "r=", "r=1,2", "d=[0", "r=1e999", "r=1m"] {
             assert!(input(bad).is_err(), "{bad}");
         }
     }
