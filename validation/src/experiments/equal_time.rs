@@ -64,7 +64,7 @@ pub fn all(effort: Effort) -> Experiments {
 impl EqualTimeRun {
     fn compare(&self, context: &Context) -> Result<(EqualTime, Option<String>)> {
         let loaded = shipped(&context.scene_path(self.scene))?;
-        let time = Duration::from_mins(1);
+        let time = Duration::from_secs(40);
         let (reference, note) = ReferenceCube::of_shipped(&loaded, self.scene, context, time)?;
         let plan = EqualTimePlan {
             name: self.scene.into(),

@@ -98,7 +98,7 @@ pub struct SphereOrder {
 pub fn all(effort: Effort) -> Experiments {
     let one = |who, order, filled| Arc::new(SphereOrder { who, order, filled }) as _;
     let mut list: Experiments =
-        (1..=effort.pick(4, 8)).map(|order| one(Insider::Path, order, false)).collect();
+        (1..=effort.pick(4, 6)).map(|order| one(Insider::Path, order, false)).collect();
     if effort == Effort::Full {
         list.push(one(Insider::Path, 3, true));
         for who in [Insider::Beams, Insider::Light] {

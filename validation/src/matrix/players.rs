@@ -68,10 +68,10 @@ pub struct Player {
 pub enum Kernels {
     /// One speaks for all: what is seen is no kernel's work.
     Alike,
-    /// 1D in every medium, 2D and 3D in two of them.
+    /// 1D in every medium, 2D in two of them, 3D in one.
     Plain,
-    /// Each in every medium (3D not where scattering is peaked); short beams and even spreading,
-    /// which share all but their last step with others, in two of them (of 3D, in one).
+    /// 1D and 2D in every medium, 3D in two of them; short beams and even spreading, which share
+    /// all but their last step with others, in two (of 3D, in one).
     All,
 }
 
@@ -119,12 +119,15 @@ impl Player {
             Kernels::Plain => simple || several && !self.is_variant(),
             Kernels::All => several || !self.is_variant(),
         };
-        // A minute for each channel of an expected blur of spheres: variants of 3D play in one
-        // medium, and none where the phase function is peaked.
+        // A minute for each channel of an expected blur of spheres, a quadrature for each pair.
         let in_turn = in_turn
-            && (self.blur() != Some(Blur::ThreeD)
-                || medium.name == "isotropic"
-                || !self.is_variant() && medium.name != "forward");
+            && match (self.blur(), medium.name) {
+                (Some(Blur::ThreeD), "coloured") => {
+                    case.kernels() == Kernels::All && !self.is_variant()
+                }
+                (Some(Blur::ThreeD), name) => name == "isotropic",
+                _ => true,
+            };
         case.admits(self.family) && in_turn
     }
 

@@ -151,8 +151,8 @@ impl Case for Ball {
         let passes = match (player.is_baseline(), medium.name) {
             (true, "forward" | "backward") => effort.pick(1, 2),
             (true, _) => 1,
-            (false, "backward" | "coloured") => effort.pick(8, 14),
-            (false, _) => effort.pick(6, 8),
+            (false, "backward" | "coloured") => 8,
+            (false, _) => 6,
         };
         Budget {
             paths: effort.pick(10_000, 14_000),

@@ -162,10 +162,9 @@ impl Case for Fog {
     fn budget(&self, player: &Player, medium: &MatrixMedium, effort: Effort) -> Budget {
         // Few photons are deflected much where the phase function is peaked.
         // A pair costs the 3D kernel a quadrature, and rays that meet one beam are alike.
-        let (rays, spheres) = match player.blur() {
-            Some(Blur::ThreeD) => (1, true),
-            _ => (4, false),
-        };
+        let spheres = player.blur() == Some(Blur::ThreeD);
+        let dear = spheres || player.is_variant() && medium.name == "coloured";
+        let rays = if dear { 1 } else { 4 };
         let passes = match (player.is_baseline(), medium.name) {
             (true, _) => effort.pick(1, 2),
             (false, _) if spheres => 9,

@@ -14,7 +14,7 @@ use tpb_scene::{
 
 use super::{Budget, Case, Family, MatrixMedium, Player};
 use crate::experiment::Effort;
-use crate::matrix::players::Kernels;
+use crate::matrix::players::{Blur, Kernels};
 use crate::matrix::view::Frame;
 use crate::sabotage::Sabotage;
 use crate::scenes::View;
@@ -125,7 +125,8 @@ impl Case for Room {
 
     fn twins(&self, player: &Player, medium: &MatrixMedium) -> Vec<Sabotage> {
         match (player.blur(), medium.name) {
-            (None, _) | (_, "isotropic") => vec![Sabotage::SigmaS(1.05)],
+            (None | Some(Blur::OneD), "isotropic") => vec![Sabotage::SigmaS(1.05)],
+            (None, _) | (_, "isotropic") => vec![Sabotage::PhaseNormalisation],
             _ => vec![Sabotage::LATE],
         }
     }
