@@ -169,7 +169,7 @@ impl Case for Fog {
             (true, _) => effort.pick(1, 2),
             (false, _) if spheres => 9,
             // A mixture of channels has no closed form along a short beam.
-            (false, "coloured") if player.is_variant() => effort.pick(8, 9),
+            (false, "coloured") if player.is_variant() => effort.pick(8, 16),
             (false, "forward") => effort.pick(25, 35),
             (false, _) => effort.pick(10, 14),
         };
