@@ -95,7 +95,17 @@ pub fn render<const C: usize>(
     layout: Layout,
     settings: &RunSettings,
 ) -> Result<(Arrays, RunSummary)> {
-    let mut film = TransientFilm::<C>::new(layout, FilmOptions::default())?;
+    render_keeping(method, layout, FilmOptions::default(), settings)
+}
+
+/// The same, into a film with these options.
+pub fn render_keeping<const C: usize>(
+    method: &dyn Method<C>,
+    layout: Layout,
+    options: FilmOptions,
+    settings: &RunSettings,
+) -> Result<(Arrays, RunSummary)> {
+    let mut film = TransientFilm::<C>::new(layout, options)?;
     let summary = run(method, &mut film, settings, &Stopwatch::start(), &mut ());
     if film.non_finite() > 0 {
         let reason = format!("{} contributions were not finite", film.non_finite());

@@ -7,15 +7,15 @@
 use std::sync::Arc;
 
 use tpb_beams::BeamOptions;
-use tpb_film::{FilmOptions, Layout, TransientFilm};
+use tpb_film::FilmOptions;
 use tpb_light::LightOptions;
 use tpb_path::PathOptions;
-use tpb_render::{Budget, RunSettings, Stopwatch, run};
+use tpb_render::{Budget, RunSettings};
 use tpb_scene::Plan;
 
 use crate::error::Result;
 use crate::experiment::{Context, Effort, Experiment, Kind, Outcome};
-use crate::measure::{Estimator, render};
+use crate::measure::{Estimator, layout, render, render_keeping};
 use crate::registry::Experiments;
 use crate::sabotage::Sabotage;
 use crate::scenes::smaller;
@@ -63,16 +63,14 @@ impl Experiment for StandardError {
         let scene = smaller(&context.scene_path("cornell-blocks"), SIZE)?;
         let plan = Plan::new(&scene, &scene.integrator);
         let method = self.0.prepare::<1>(&scene, &plan, scene.integrator)?;
-        let layout = Layout::new(SIZE, SIZE, crate::measure::layout(&scene.film, 0.0)?.time)?;
+        let layout = layout(&scene.film, 0.0)?;
         let settings = |passes, first_pass| RunSettings {
             seed: context.seed,
             budget: Budget::Passes(passes),
             first_pass,
         };
         let keeping = FilmOptions { variance: true, ..FilmOptions::default() };
-        let mut film = TransientFilm::<1>::new(layout, keeping)?;
-        run(&*method, &mut film, &settings(PASSES, 0), &Stopwatch::start(), &mut ());
-        let reported = film.develop();
+        let reported = render_keeping(&*method, layout, keeping, &settings(PASSES, 0))?.0;
         let passes = (0..PASSES)
             .map(|pass| Ok(render(&*method, layout, &settings(1, pass))?.0.transient))
             .collect::<Result<Vec<_>>>()?;

@@ -132,15 +132,6 @@ fn input(text: &str) -> Result<(String, Value), Failure> {
 /// Inputs that are whole numbers.
 const COUNTS: [&str; 4] = ["order", "chords", "echo", "scatterings"];
 
-/// The whole numbers of a range, both ends included; the default where it has none.
-fn whole_steps(range: &str) -> usize {
-    let ends = range.split_once("..").and_then(|(from, to)| {
-        Some((from.trim().parse::<i64>().ok()?, to.trim().parse::<i64>().ok()?))
-    });
-    let steps = ends.and_then(|(from, to)| usize::try_from(to.checked_sub(from)?).ok());
-    steps.map_or(DEFAULT_COUNT, |steps| steps.saturating_add(1).min(MAX_COUNT))
-}
-
 impl Sweep {
     /// `KEY=A..B` or `KEY=A..B:N`.
     fn new(text: &str, logarithmic: bool) -> Result<Self, Failure> {
@@ -152,12 +143,12 @@ impl Sweep {
         };
         let (key, range) = text.split_once('=').ok_or_else(|| wrong("expected KEY=A..B:N"))?;
         let (range, count) = match range.rsplit_once(':') {
-            None if COUNTS.contains(&key.trim()) => (range, whole_steps(range)),
-            None => (range, DEFAULT_COUNT),
+            None => (range, None),
             Some((range, count)) => {
                 let count: Option<usize> = count.trim().parse().ok();
                 let count = count.filter(|count| (1..=MAX_COUNT).contains(count));
-                (range, count.ok_or_else(|| wrong("the number of values is from 1 to 1000000"))?)
+                let wrong_count = || wrong("the number of values is from 1 to 1000000");
+                (range, Some(count.ok_or_else(wrong_count)?))
             }
         };
         let (from, to) = range.split_once("..").ok_or_else(|| wrong("expected A..B"))?;
@@ -169,6 +160,10 @@ impl Sweep {
             return Err(wrong("with --log-x, both ends must be positive"));
         }
         let key = key.trim();
+        let steps = to - from;
+        let whole = COUNTS.contains(&key) && steps == steps.trunc() && steps >= 0.0;
+        let one_by_one = (steps as usize).saturating_add(1).min(MAX_COUNT);
+        let count = count.unwrap_or(if whole { one_by_one } else { DEFAULT_COUNT });
         if key == "bins" {
             if to <= from {
                 return Err(wrong("bins need a range that ascends"));
@@ -177,8 +172,7 @@ impl Sweep {
             let points = edges.windows(2).map(<[f64]>::to_vec).collect();
             return Ok(Self { keys: vec!["t0".to_owned(), "t1".to_owned()], points });
         }
-        let one_by_one = COUNTS.contains(&key) && from + (count - 1) as f64 == to;
-        let values = if one_by_one {
+        let values = if whole && count == one_by_one {
             (0..count).map(|i| from + i as f64).collect()
         } else {
             spaced(from, to, count, logarithmic)

@@ -3,6 +3,7 @@
 mod ball;
 mod floor;
 mod fog;
+mod fog_box;
 mod interface;
 mod lamp;
 mod room;

@@ -4,48 +4,22 @@
 //! and lamp are outside the fog, where no connection has infinite variance. Beams blur by a radius
 //! that is small against everything that is seen; what is left of it is within their margin.
 
-use glam::DVec3;
 use tpb_optics::Rgb;
-use tpb_scene::geometry::{Outline, Planar};
-use tpb_scene::{
-    Bsdf, EmitterKind, EmitterPart, IntegratorSpec, MediumBoundary, MediumId, Primitive, Reflector,
-    SceneParts, ShapePart, TimeSpec,
-};
+use tpb_scene::{Bsdf, IntegratorSpec, Reflector, SceneParts};
 
-use super::{Budget, Case, Family, MatrixMedium, Player};
+use super::{Budget, Case, Family, MatrixMedium, Player, fog_box};
 use crate::experiment::Effort;
 use crate::matrix::players::{Blur, Kernels};
 use crate::matrix::view::Frame;
 use crate::sabotage::Sabotage;
 use crate::scenes::View;
 
-const CENTRE: DVec3 = DVec3::new(0.0, 0.0, 2.5);
-const LAMP: DVec3 = DVec3::new(0.4, 1.8, 2.2);
 /// Media are twice as dense here: light is scattered often.
 const DENSITY: f64 = 2.0;
 const RADIUS: f64 = 0.03;
 
 /// The case.
 pub(super) struct Room;
-
-/// A spot that lights the whole box evenly: 66 degrees from its axis reach all corners.
-fn lamp() -> EmitterPart {
-    let kind = EmitterKind::Spot {
-        position: LAMP,
-        axis: (CENTRE - LAMP).normalize(),
-        intensity: Rgb::ONE,
-        cos_cutoff: 70.0_f64.to_radians().cos(),
-        cos_beam: 66.0_f64.to_radians().cos(),
-    };
-    EmitterPart { name: "spot".into(), kind, stated_medium: None }
-}
-
-/// A square of half-width `half`, its normal along `towards`.
-fn square(centre: DVec3, towards: DVec3, half: f64) -> Primitive {
-    let u = if towards.x.abs() > 0.5 { DVec3::Y } else { DVec3::X };
-    let v = towards.cross(u);
-    Primitive::Planar(Planar::new(centre, half * u, half * v, Outline::Parallelogram))
-}
 
 impl Case for Room {
     fn name(&self) -> &'static str {
@@ -57,8 +31,7 @@ impl Case for Room {
     }
 
     fn frame(&self) -> Frame {
-        let time = TimeSpec { start_opl: 2.0, bin_width_opl: 0.25, bins: 40 };
-        Frame { side: 4, fov: 36.0, time }
+        fog_box::frame()
     }
 
     fn integrator(&self) -> IntegratorSpec {
@@ -85,25 +58,11 @@ impl Case for Room {
     fn parts(&self, view: &View, medium: &MatrixMedium) -> SceneParts {
         let mut parts = view.parts();
         parts.media = vec![medium.medium(DENSITY)];
-        parts.emitters = vec![lamp()];
-        let faces = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z];
+        // It lights the whole box evenly: 66 degrees from its axis reach all corners.
+        parts.emitters = vec![fog_box::spot(70.0, 66.0)];
         let front = Reflector::Diffuse(Rgb::splat(0.5));
-        parts.shapes = vec![
-            ShapePart {
-                name: "box".into(),
-                primitives: faces.map(|n| square(CENTRE + n, n, 1.0)).into(),
-                bsdf: Bsdf::Null,
-                boundary: Some(MediumBoundary { interior: Some(MediumId(0)), exterior: None }),
-                radiance: None,
-            },
-            ShapePart {
-                name: "floor".into(),
-                primitives: vec![square(CENTRE - 0.8 * DVec3::Y, DVec3::Y, 0.9)],
-                bsdf: Bsdf::Opaque { front, back: Reflector::Black },
-                boundary: None,
-                radiance: None,
-            },
-        ];
+        let floor = fog_box::floor(Bsdf::Opaque { front, back: Reflector::Black });
+        parts.shapes = vec![fog_box::walls(), floor];
         parts
     }
 

@@ -7,43 +7,23 @@
 use glam::DVec3;
 use tpb_optics::Rgb;
 use tpb_optics::microfacet::{Ggx, Metal, RoughConductor};
-use tpb_scene::geometry::{Outline, Planar, Sphere};
+use tpb_scene::geometry::Sphere;
 use tpb_scene::{
-    Bsdf, Dielectric, EmitterKind, EmitterPart, IntegratorSpec, MediumBoundary, MediumId,
-    Primitive, Reflector, RoughMetal, SceneParts, ShapePart, TimeSpec,
+    Bsdf, Dielectric, IntegratorSpec, MediumBoundary, MediumId, Primitive, Reflector, RoughMetal,
+    SceneParts,
 };
 
-use super::{Budget, Case, Family, MatrixMedium, Player};
+use super::{Budget, Case, Family, MatrixMedium, Player, fog_box};
 use crate::experiment::Effort;
 use crate::matrix::view::Frame;
 use crate::sabotage::Sabotage;
 use crate::scenes::View;
 
-const CENTRE: DVec3 = DVec3::new(0.0, 0.0, 2.5);
-const LAMP: DVec3 = DVec3::new(0.4, 1.8, 2.2);
 const BALL: DVec3 = DVec3::new(0.2, -0.1, 2.4);
 const RADIUS: f64 = 0.03;
 
 /// The case.
 pub(super) struct Rough;
-
-fn lamp() -> EmitterPart {
-    let kind = EmitterKind::Spot {
-        position: LAMP,
-        axis: (CENTRE - LAMP).normalize(),
-        intensity: Rgb::ONE,
-        cos_cutoff: 50.0_f64.to_radians().cos(),
-        cos_beam: 45.0_f64.to_radians().cos(),
-    };
-    EmitterPart { name: "spot".into(), kind, stated_medium: None }
-}
-
-/// A square of half-width `half`, its normal along `towards`.
-fn square(centre: DVec3, towards: DVec3, half: f64) -> Primitive {
-    let u = if towards.x.abs() > 0.5 { DVec3::Y } else { DVec3::X };
-    let v = towards.cross(u);
-    Primitive::Planar(Planar::new(centre, half * u, half * v, Outline::Parallelogram))
-}
 
 impl Case for Rough {
     fn name(&self) -> &'static str {
@@ -55,8 +35,7 @@ impl Case for Rough {
     }
 
     fn frame(&self) -> Frame {
-        let time = TimeSpec { start_opl: 2.0, bin_width_opl: 0.25, bins: 40 };
-        Frame { side: 4, fov: 36.0, time }
+        fog_box::frame()
     }
 
     fn integrator(&self) -> IntegratorSpec {
@@ -78,9 +57,7 @@ impl Case for Rough {
     fn parts(&self, view: &View, medium: &MatrixMedium) -> SceneParts {
         let mut parts = view.parts();
         parts.media = vec![medium.medium(1.0)];
-        parts.emitters = vec![lamp()];
-        let fog = MediumBoundary { interior: Some(MediumId(0)), exterior: None };
-        let faces = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z];
+        parts.emitters = vec![fog_box::spot(50.0, 45.0)];
         let surface = RoughConductor { ggx: Ggx::new(0.4), metal: Metal::Perfect };
         let front = Reflector::Rough(RoughMetal { surface, reflectance: Rgb::splat(0.8) });
         let glass = Dielectric {
@@ -90,22 +67,10 @@ impl Case for Rough {
             transmittance: Rgb::ONE,
         };
         let ball = Sphere { centre: BALL, radius: 0.35, flipped: false };
-        let part = |name: &str, primitives, bsdf, boundary| ShapePart {
-            name: name.into(),
-            primitives,
-            bsdf,
-            boundary,
-            radiance: None,
-        };
         parts.shapes = vec![
-            part("box", faces.map(|n| square(CENTRE + n, n, 1.0)).into(), Bsdf::Null, Some(fog)),
-            part(
-                "floor",
-                vec![square(CENTRE - 0.8 * DVec3::Y, DVec3::Y, 0.9)],
-                Bsdf::Opaque { front, back: Reflector::Black },
-                None,
-            ),
-            part(
+            fog_box::walls(),
+            fog_box::floor(Bsdf::Opaque { front, back: Reflector::Black }),
+            fog_box::part(
                 "ball",
                 vec![Primitive::Sphere(ball)],
                 Bsdf::RoughDielectric(glass, Ggx::new(0.3)),

@@ -11,30 +11,21 @@ use tpb_optics::{Rgb, Spectrum};
 use tpb_scene::geometry::{Outline, Planar, VertexData};
 use tpb_scene::texture::{Bitmap, Coordinates, Filter, Pattern, Wrap};
 use tpb_scene::{
-    Bsdf, EmitterKind, EmitterPart, IntegratorSpec, MediumBoundary, MediumId, Primitive, Reflector,
-    SceneParts, ShapePart, Texture, TextureId, TimeSpec,
+    Bsdf, EmitterKind, EmitterPart, IntegratorSpec, Primitive, Reflector, SceneParts, Texture,
+    TextureId,
 };
 
-use super::{Budget, Case, Family, MatrixMedium, Player};
+use super::{Budget, Case, Family, MatrixMedium, Player, fog_box};
 use crate::experiment::Effort;
 use crate::matrix::view::Frame;
 use crate::sabotage::Sabotage;
 use crate::scenes::View;
 
-const CENTRE: DVec3 = DVec3::new(0.0, 0.0, 2.5);
-const FLOOR: DVec3 = DVec3::new(0.0, -0.8, 2.5);
 const BALL: DVec3 = DVec3::new(0.1, -0.2, 2.4);
 const RADIUS: f64 = 0.03;
 
 /// The case.
 pub(super) struct Textured;
-
-/// A square of half-width `half`, its normal along `towards`.
-fn square(centre: DVec3, towards: DVec3, half: f64) -> Primitive {
-    let u = if towards.x.abs() > 0.5 { DVec3::Y } else { DVec3::X };
-    let v = towards.cross(u);
-    Primitive::Planar(Planar::new(centre, half * u, half * v, Outline::Parallelogram))
-}
 
 /// An octahedron whose normals are those of a ball, with texture coordinates.
 fn mesh(radius: f64) -> Vec<Primitive> {
@@ -59,7 +50,9 @@ fn textures() -> Vec<Texture> {
     let board = Texture {
         pattern: Pattern::Checkerboard([Rgb::splat(0.8), Spectrum([0.2, 0.3, 0.5])]),
         to_uv: DAffine2::from_mat2(DMat2::from_diagonal(DVec2::splat(2.0))),
-        coordinates: Coordinates::Rectangle(DAffine3::from_mat3_translation(axes, FLOOR).inverse()),
+        coordinates: Coordinates::Rectangle(
+            DAffine3::from_mat3_translation(axes, fog_box::FLOOR).inverse(),
+        ),
     };
     let texels = vec![[0.9, 0.8, 0.7], [0.3, 0.4, 0.5], [0.5, 0.2, 0.6], [0.7, 0.7, 0.1]];
     let image = Bitmap::new(2, 2, texels).expect("four texels");
@@ -81,8 +74,7 @@ impl Case for Textured {
     }
 
     fn frame(&self) -> Frame {
-        let time = TimeSpec { start_opl: 2.0, bin_width_opl: 0.25, bins: 40 };
-        Frame { side: 4, fov: 36.0, time }
+        fog_box::frame()
     }
 
     fn integrator(&self) -> IntegratorSpec {
@@ -110,21 +102,12 @@ impl Case for Textured {
         let axis = DVec3::new(-0.4, -0.8, 0.2).normalize();
         let kind = EmitterKind::Directional { axis, irradiance: Rgb::ONE, position, radius };
         parts.emitters = vec![EmitterPart { name: "sun".into(), kind, stated_medium: None }];
-        let faces = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z, -DVec3::Z];
         let textured =
             |id| Bsdf::Opaque { front: Reflector::Textured(TextureId(id)), back: Reflector::Black };
-        let part = |name: &str, primitives, bsdf, boundary| ShapePart {
-            name: name.into(),
-            primitives,
-            bsdf,
-            boundary,
-            radiance: None,
-        };
-        let fog = MediumBoundary { interior: Some(MediumId(0)), exterior: None };
         parts.shapes = vec![
-            part("box", faces.map(|n| square(CENTRE + n, n, 1.0)).into(), Bsdf::Null, Some(fog)),
-            part("floor", vec![square(FLOOR, DVec3::Y, 0.9)], textured(0), None),
-            part("mesh", mesh(0.4), textured(1), None),
+            fog_box::walls(),
+            fog_box::floor(textured(0)),
+            fog_box::part("mesh", mesh(0.4), textured(1), None),
         ];
         parts
     }
