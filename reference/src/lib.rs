@@ -38,6 +38,7 @@ pub mod phase;
 mod published;
 pub mod registry;
 pub mod single_scattering;
+pub mod sources;
 pub mod tables;
 
 pub use error::ReferenceError;

@@ -52,6 +52,8 @@ pub struct Solution {
     pub unit: &'static str,
     /// The units of its quantities, in their order, where they differ; else empty.
     pub units: &'static [&'static str],
+    /// Units of its inputs where they are not those that the key has elsewhere.
+    pub input_units: &'static [(&'static str, &'static str)],
     /// Inputs that may be left out, with the JSON text of their values.
     pub defaults: &'static [(&'static str, &'static str)],
     /// For an approximation, where and how well it holds; `None` for exact solutions.
@@ -130,6 +132,12 @@ impl Solution {
         self
     }
 
+    /// With inputs in units of their own.
+    pub(crate) const fn inputs(mut self, units: &'static [(&'static str, &'static str)]) -> Self {
+        self.input_units = units;
+        self
+    }
+
     /// With inputs that may be left out, and the JSON text of their values.
     pub(crate) const fn defaults(
         mut self,
@@ -171,6 +179,7 @@ macro_rules! solution {
             summary: "",
             unit: "",
             units: &[],
+            input_units: &[],
             defaults: &[],
             approximate: None,
         }

@@ -32,9 +32,6 @@ use crate::reference_cube::{Provenance, ReferenceCube};
 use crate::statistics::split::Estimate;
 use crate::statistics::{Gram, RatioInterval, Split, ratio_of_means, student};
 
-/// A defect of all light that the test for bias must find.
-pub const CONTROL: f64 = 1.1;
-
 /// Confidence of all intervals.
 pub const CONFIDENCE: f64 = 0.95;
 
@@ -75,7 +72,7 @@ pub struct MethodResult {
     /// Squared bias by the pixel-wise estimate, over the signal; its standard error and interval
     /// are meaningful where pixels are independent.
     pub pixel_bias: Estimate,
-    /// The same if all light were [`CONTROL`] times as strong: a negative control.
+    /// The same if all light were [`EqualTimePlan::control`] times as strong: a negative control.
     pub control_bias: Estimate,
 }
 
@@ -134,6 +131,8 @@ pub struct EqualTimePlan<'a> {
     pub reference: &'a ReferenceCube,
     /// The methods, the baseline first.
     pub methods: Vec<Estimator>,
+    /// A defect that the test for bias must find: all light is this many times as strong.
+    pub control: f64,
     /// Wall time of a run.
     pub time: Duration,
     /// Runs of each method, at least 3.
@@ -229,7 +228,7 @@ impl EqualTimePlan<'_> {
         let errors = Errors::new(&cubes, self.reference);
         let mut stronger = cubes;
         for cube in &mut stronger {
-            cube.scale(CONTROL);
+            cube.scale(self.control);
         }
         let control = Errors::new(&stronger, self.reference);
         let noise = self.reference.noise(|pixel| self.reference.mask[pixel]);
@@ -308,9 +307,10 @@ impl EqualTime {
     /// A table for people, one line each.
     pub fn table(&self) -> Vec<String> {
         let mut lines = vec![format!(
-            "{}: {} s per run; reference: path, {} passes, {:.0} CPU s, own NMSE {:.1e}; {} of {} pixels judged",
+            "{}: {} s per run; reference: {}, {} passes, {:.0} CPU s, own NMSE {:.1e}; {} of {} pixels judged",
             self.scene,
             self.seconds,
+            self.reference.method,
             self.reference.passes,
             self.reference.cpu_seconds.unwrap_or(f64::NAN),
             self.reference_nmse,

@@ -9,7 +9,7 @@
 //!   that are judged, batch by batch.
 //! * [`memory`]: renders that are wanted again; [`microfacet`]: rough surfaces in textbook form.
 //! * [`equal_time`], [`reference_cube`]: methods against each other at equal time, and the long
-//!   render that both are compared with.
+//!   render that both are compared with; [`judged`]: by whom, and in which pixels.
 //! * [`run_time`]: how the error of a method falls with the time it is given.
 //! * [`taps`]: photons at given optical path lengths, for what no camera sees.
 //! * [`suite`]: running many; [`report`], [`pages`]: what is printed and what is kept of it.
@@ -23,6 +23,7 @@ mod error;
 pub mod expected;
 pub mod experiment;
 pub mod experiments;
+pub mod judged;
 pub mod matrix;
 pub mod measure;
 pub mod memory;

@@ -1,6 +1,6 @@
 //! The long render that methods are compared with: making, keeping and reading it.
 //!
-//! A reference cube is the mean of many passes of the unbiased path tracer. It is kept small
+//! A reference cube is the mean of many passes of an unbiased method. It is kept small
 //! enough to ship: half floats, with a scale of its own for each frame so that dark frames keep
 //! their digits, compressed. What the rounding adds is known exactly when the file is made, and it
 //! is counted as variance. NumPy reads the file:
@@ -9,7 +9,7 @@
 //! | --- | --- | --- |
 //! | `transient` | f2 (H, W, T) | bins over the scale of their frame |
 //! | `scale` | f8 (T) | to be multiplied with |
-//! | `mask` | u1 (H, W) | 1: judged, no emitter is seen within one pixel |
+//! | `mask` | u1 (H, W) | 1: judged ([`crate::judged`]) |
 //! | `variance_pixel` | f8 (H, W) | variance of the mean, summed over bins |
 //! | `variance_frame` | f8 (T) | the same, summed over judged pixels |
 //! | `opl_edges` | f8 (T + 1) | \[m\] |
@@ -23,22 +23,19 @@ use half::f16;
 use serde::{Deserialize, Serialize};
 use tpb_film::archive::{ArchiveReader, ArchiveWriter, Compression};
 use tpb_film::{FilmOptions, TransientFilm, atomic_write};
-use tpb_path::PathOptions;
 use tpb_render::{Budget, RunSettings, Stopwatch, run};
 use tpb_scene::load::LoadedScene;
-use tpb_scene::{IntegratorSpec, Plan, Transport};
+use tpb_scene::{Plan, Transport};
 
-use crate::cube::{Cube, dilate};
+use crate::cube::Cube;
 use crate::error::{Result, ValidationError};
 use crate::experiment::Context;
-use crate::measure::{Estimator, layout, render};
+use crate::judged::Referee;
+use crate::measure::layout;
 use crate::statistics::ReferenceNoise;
 
 /// Half floats use this much of their range.
 const LARGEST: f64 = 32_768.0;
-
-/// Camera paths per pixel that look for emitters.
-const MASK_SAMPLES: u32 = 1024;
 
 /// Where a reference comes from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,6 +44,9 @@ pub struct Provenance {
     pub program: String,
     /// Commit of the sources.
     pub commit: String,
+    /// Method; older files do not say.
+    #[serde(default = "path")]
+    pub method: String,
     /// The scene with all defaults.
     pub scene: serde_json::Value,
     /// Seed.
@@ -59,6 +59,10 @@ pub struct Provenance {
     pub wall_seconds: f64,
     /// CPU time \[s\].
     pub cpu_seconds: Option<f64>,
+}
+
+fn path() -> String {
+    "path".into()
 }
 
 /// A reference and what is known of its error.
@@ -80,10 +84,16 @@ pub struct ReferenceCube {
 
 impl ReferenceCube {
     /// Renders a reference for `time`.
-    pub fn make(scene: &LoadedScene, time: Duration, seed: u64, commit: &str) -> Result<Self> {
+    pub fn make(
+        scene: &LoadedScene,
+        referee: Referee,
+        time: Duration,
+        seed: u64,
+        commit: &str,
+    ) -> Result<Self> {
         match Plan::new(&scene.scene, &scene.scene.integrator).transport {
-            Transport::Mono => make::<1>(scene, time, seed, commit),
-            Transport::Rgb => make::<3>(scene, time, seed, commit),
+            Transport::Mono => make::<1>(scene, referee, time, seed, commit),
+            Transport::Rgb => make::<3>(scene, referee, time, seed, commit),
         }
     }
 
@@ -93,6 +103,7 @@ impl ReferenceCube {
     pub fn of_shipped(
         loaded: &LoadedScene,
         name: &str,
+        referee: Referee,
         context: &Context,
         time: Duration,
     ) -> Result<(Self, Option<String>)> {
@@ -101,10 +112,13 @@ impl ReferenceCube {
             if path.exists() {
                 let reference = Self::read(path)?;
                 reference.check(loaded)?;
-                return Ok((reference, None));
+                if reference.provenance.method == referee.estimator().name() {
+                    return Ok((reference, None));
+                }
             }
         }
-        let reference = Self::make(loaded, time, context.seed ^ 0x5eed, "made for this run")?;
+        let reference =
+            Self::make(loaded, referee, time, context.seed ^ 0x5eed, "made for this run")?;
         reference.write(&made)?;
         let note = format!("no reference was shipped: rendered one for {} s", time.as_secs());
         Ok((reference, Some(note)))
@@ -229,6 +243,7 @@ impl ReferenceCube {
 
 fn make<const C: usize>(
     loaded: &LoadedScene,
+    referee: Referee,
     time: Duration,
     seed: u64,
     commit: &str,
@@ -236,8 +251,7 @@ fn make<const C: usize>(
     let scene = &loaded.scene;
     let plan = Plan::new(scene, &scene.integrator);
     let started = Stopwatch::start();
-    let estimator = Estimator::Path(PathOptions::default());
-    let method = estimator.prepare::<C>(scene, &plan, scene.integrator)?;
+    let method = referee.estimator().prepare::<C>(scene, &plan, scene.integrator)?;
     let options = FilmOptions { variance: true, ..FilmOptions::default() };
     let mut film = TransientFilm::<C>::new(layout(&scene.film, 0.0)?, options)?;
     let settings = RunSettings { seed, budget: Budget::Time(time), first_pass: 0 };
@@ -247,7 +261,7 @@ fn make<const C: usize>(
         let reason = "a reference needs a time axis and at least two passes";
         return Err(ValidationError::unusable("reference render", reason));
     };
-    let mask = sees_no_emitter::<C>(loaded)?;
+    let mask = referee.judged::<C>(scene)?;
     let channels = arrays.channels;
     let cube = Cube::of(&arrays);
     let mut variance_pixel = vec![0.0; cube.pixels()];
@@ -264,6 +278,7 @@ fn make<const C: usize>(
     let provenance = Provenance {
         program: concat!("tpb-validation ", env!("CARGO_PKG_VERSION")).into(),
         commit: commit.into(),
+        method: method.name().into(),
         scene: loaded.canonical.clone(),
         seed,
         passes: summary.passes,
@@ -276,24 +291,6 @@ fn make<const C: usize>(
         ReferenceCube { cube, mask, variance_pixel, variance_frame, opl_edges, provenance };
     reference.round();
     Ok(reference)
-}
-
-/// Pixels within one pixel of which no emitter is seen, directly or through mirrors and glass:
-/// emission alone, from depth 1 on, without any scattering in between, is what remains when
-/// media and diffuse surfaces are never connected to. Seen directly is depth 1.
-fn sees_no_emitter<const C: usize>(loaded: &LoadedScene) -> Result<Vec<bool>> {
-    let scene = &loaded.scene;
-    let direct = IntegratorSpec { max_depth: Some(1), ..scene.integrator };
-    let plan = Plan::new(scene, &direct);
-    let options = PathOptions { samples_per_pass: MASK_SAMPLES.try_into().ok() };
-    let method = Estimator::Path(options).prepare::<C>(scene, &plan, direct)?;
-    let mut layout = layout(&scene.film, 0.0)?;
-    layout.time = None;
-    let settings = RunSettings { seed: 0, budget: Budget::Passes(1), first_pass: 0 };
-    let (arrays, _) = render(&*method, layout, &settings)?;
-    let lit: Vec<bool> =
-        arrays.steady.chunks_exact(arrays.channels).map(|p| p.iter().any(|&v| v > 0.0)).collect();
-    Ok(dilate(&lit, layout.width, layout.height).into_iter().map(|near| !near).collect())
 }
 
 #[cfg(test)]
@@ -317,6 +314,7 @@ mod tests {
             provenance: Provenance {
                 program: "test".into(),
                 commit: "none".into(),
+                method: path(),
                 scene: serde_json::json!({"type": "scene"}),
                 seed: 1,
                 passes: 2,

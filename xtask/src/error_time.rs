@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use clap::Args;
 use tpb_validation::experiment::{Context, Effort};
+use tpb_validation::judged::Referee;
 use tpb_validation::measure::Estimator;
 use tpb_validation::reference_cube::ReferenceCube;
 use tpb_validation::run_time::{Clock, ErrorAgainstTime, RunTimePlan};
@@ -67,7 +68,7 @@ fn measure(args: &ErrorTimeArgs, scene: &str) -> Result<ErrorAgainstTime, Valida
     let context = Context::new(Effort::Full, args.seed, kept);
     let loaded = scenes::shipped(&context.scene_path(scene))?;
     let (reference, note) =
-        ReferenceCube::of_shipped(&loaded, scene, &context, args.reference_time)?;
+        ReferenceCube::of_shipped(&loaded, scene, Referee::Path, &context, args.reference_time)?;
     if let Some(note) = note {
         say(&format!("{scene}: {note}"));
     }

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use clap::Args;
 use tpb_validation::experiment::{Context, Effort, Experiment};
+use tpb_validation::judged::Referee;
 use tpb_validation::reference_cube::ReferenceCube;
 use tpb_validation::suite::Circumstances;
 use tpb_validation::{registry, report, scenes, suite, with_threads};
@@ -122,8 +123,9 @@ pub(crate) fn reference_render(args: &ReferenceRenderArgs) -> Outcome {
     let loaded = scenes::shipped(&context.scene_path(&args.scene))?;
     let out = args.out.clone().unwrap_or_else(|| context.reference_path(&args.scene));
     say(&format!("rendering the reference of {} for {} s", args.scene, args.time));
-    let made =
-        with_threads(args.threads, || ReferenceCube::make(&loaded, time, args.seed, &commit()))??;
+    let made = with_threads(args.threads, || {
+        ReferenceCube::make(&loaded, Referee::Path, time, args.seed, &commit())
+    })??;
     made.write(&out)?;
     let noise = made.noise(|pixel| made.mask[pixel]);
     say(&format!(

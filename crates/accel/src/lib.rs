@@ -75,6 +75,7 @@ pub enum Quality {
 }
 
 /// The hierarchy over boxes `0..n`; it answers with their indices.
+#[derive(Clone)]
 pub struct Bvh {
     nodes: Bvh2,
     centre: DVec3,

@@ -1,13 +1,17 @@
 //! The method: one pass traces photons, sorts what they add by pixel, and deposits it.
 
-use tpb_film::{Arrival, TransientFilm};
+use tpb_film::{Arrival, Ledger, TransientFilm};
+use tpb_optics::Spectrum;
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Plan, Scene, Transport};
 use tpb_transport::{PhotonBatch, PhotonTracer};
 
 use crate::connect::Connections;
-use crate::sorted::Sorted;
+use crate::sorted::{Contribution, Sorted};
 use crate::{LightOptions, OptionError, Settings};
+
+/// Photons of the pilot run: enough to tell a dozen contributions a photon from thousands.
+const PILOT: u64 = 16;
 
 /// The transient light tracer of one scene, on `C` transported channels.
 pub struct LightTracer<'a, const C: usize> {
@@ -32,7 +36,27 @@ impl<'a, const C: usize> LightTracer<'a, C> {
     ) -> Result<Self, OptionError> {
         assert!(C == 3 || C == 1 && plan.transport == Transport::Mono, "channels as planned");
         let settings = Settings::new(&scene.film, plan, options)?;
-        Ok(Self { scene, integrator, settings })
+        let mut tracer = Self { scene, integrator, settings };
+        if options.photons_per_pass.is_none() && settings.photons_per_pass > 0 {
+            tracer.settings.fit(tracer.bytes_per_photon());
+        }
+        Ok(tracer)
+    }
+
+    /// Memory of a photon's contributions, kept and sorted, as a pilot run finds it \[bytes\]. Its
+    /// random numbers are those of no pass.
+    fn bytes_per_photon(&self) -> f64 {
+        let pilot = PhotonBatch { seed: 0, pass: u64::MAX, count: PILOT };
+        let (chunks, _) = self.trace(pilot, false);
+        let contributions = chunks.iter().map(|chunk| chunk.contributions.len());
+        let bytes = size_of::<Contribution<C>>() + size_of::<(f64, Spectrum<C>)>();
+        (contributions.sum::<usize>() * bytes) as f64 / PILOT as f64
+    }
+
+    fn trace(&self, batch: PhotonBatch, unwarp: bool) -> (Vec<Connections<'a, C>>, Ledger) {
+        let Self { scene, integrator, .. } = *self;
+        let photons = PhotonTracer { scene, integrator };
+        photons.trace(batch, |_| Connections::new(scene, integrator, unwarp))
     }
 
     /// All options, defaults filled in.
@@ -51,13 +75,10 @@ impl<const C: usize> Method<C> for LightTracer<'_, C> {
     }
 
     fn pass(&self, id: PassId, film: &mut TransientFilm<C>) -> PassReport {
-        let Self { scene, integrator, settings } = *self;
         let (pixels, unwarp) = (film.layout().pixels(), film.options().unwarp);
-        let photons = PhotonTracer { scene, integrator };
-        let count = settings.photons_per_pass;
+        let count = self.settings.photons_per_pass;
         let batch = PhotonBatch { seed: id.seed, pass: id.index, count };
-        let (chunks, ledger) =
-            photons.trace(batch, |_| Connections::<C>::new(scene, integrator, unwarp));
+        let (chunks, ledger) = self.trace(batch, unwarp);
         let connections = chunks.iter().map(|chunk| chunk.tested).sum();
         let chunks = chunks.into_iter().map(|chunk| chunk.contributions).collect();
         let sorted = Sorted::new(chunks, pixels);

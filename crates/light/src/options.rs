@@ -14,6 +14,8 @@ const MOST_PHOTONS: u64 = 1 << 18;
 /// Memory of a photon's contributions while they are sorted, each seen a dozen times. Measured on
 /// cornell-blocks, one channel: 360; three take twice as much.
 const PHOTON_BYTES: u64 = 1024;
+/// Memory of a default pass: in thick media that absorb little, a photon is seen thousands of times.
+const PASS_BYTES: f64 = 1e9;
 /// Memory beyond which a pass is refused.
 const MOST_BYTES: u64 = 16 << 30;
 
@@ -22,7 +24,8 @@ const MOST_BYTES: u64 = 16 << 30;
 #[serde(default, deny_unknown_fields)]
 pub struct LightOptions {
     /// Photons emitted in a pass. Default: one for every 16 cells (bins, before and after) of the
-    /// film, from 16384 to 262144.
+    /// film, from 16384 to 262144; fewer where photons are seen so often, in a pilot run, that a pass
+    /// would take more than 1 GB.
     pub photons_per_pass: Option<u64>,
 }
 
@@ -62,5 +65,11 @@ impl Settings {
             return Err(OptionError { expected, found: photons });
         }
         Ok(Self { photons_per_pass: if plan.eye_connections { photons } else { 0 } })
+    }
+
+    /// Lowers the number of photons until a pass of so many bytes each fits into [`PASS_BYTES`].
+    pub(crate) fn fit(&mut self, bytes_per_photon: f64) {
+        let most = (PASS_BYTES / bytes_per_photon.max(1.0)) as u64;
+        self.photons_per_pass = self.photons_per_pass.min(most.max(1));
     }
 }

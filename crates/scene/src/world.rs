@@ -36,6 +36,7 @@ pub struct Shape {
 }
 
 /// A complete, consistent scene.
+#[derive(Clone)]
 pub struct Scene {
     /// All primitives.
     pub primitives: Vec<Primitive>,

@@ -30,7 +30,8 @@ pub struct SphereDecay {
 pub fn sphere_decay_rate(input: &SphereDecay) -> Result<f64> {
     let albedo = input.albedo;
     require(albedo > 0.0 && albedo <= 1.0, "albedo", albedo, "above 0 and at most 1")?;
-    let target = -albedo.ln();
+    // At albedo 1, 0 and not -0.
+    let target = 0.0 - albedo.ln();
     // The line through 0 with the slope 1 is below the root: Newton's iteration of a convex
     // function then falls towards it from the second step on.
     let mut kappa = target;

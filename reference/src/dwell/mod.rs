@@ -16,6 +16,7 @@ pub use spread::{DwellSpread, dwell_mean_square_distance};
 use crate::registry::Solution;
 use crate::registry::ToleranceClass::{ClosedForm, Quadrature};
 use crate::registry::solution;
+use crate::sources::DIAMETERS;
 
 pub(crate) static SOLUTIONS: &[Solution] = &[
     solution!(
@@ -30,5 +31,6 @@ pub(crate) static SOLUTIONS: &[Solution] = &[
     solution!("dwell_single_scatter_radiance", Quadrature, dwell_single_scatter_radiance)
         .describe("radiance of once-scattered light where the scattering takes time", "W/(m^2 sr)"),
     solution!("dwell_sphere_cdf", Quadrature, dwell_sphere_cdf)
-        .describe("law of the delay x of n chords and n dwells, in diameters", "1"),
+        .describe("law of the delay x of n chords and n dwells, in diameters", "1")
+        .inputs(DIAMETERS),
 ];

@@ -1,4 +1,5 @@
-//! Equal time: photon beams against the path tracer, both against a long unbiased render.
+//! Equal time: photon beams against an unbiased method, both against a long render of the latter:
+//! the path tracer, or the light tracer where paths do not find all light.
 //!
 //! Three claims, each with its false-alarm probability:
 //!
@@ -15,11 +16,11 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use tpb_beams::BeamOptions;
-use tpb_path::PathOptions;
 
-use crate::equal_time::{CONFIDENCE, CONTROL, EqualTime, EqualTimePlan, MethodResult};
+use crate::equal_time::{CONFIDENCE, EqualTime, EqualTimePlan, MethodResult};
 use crate::error::Result;
 use crate::experiment::{Context, Effort, Experiment, Kind, Outcome};
+use crate::judged::Referee;
 use crate::measure::Estimator;
 use crate::reference_cube::ReferenceCube;
 use crate::registry::Experiments;
@@ -27,7 +28,7 @@ use crate::scenes::shipped;
 use crate::statistics::{bootstrap, ratio::RATIO_LEVEL};
 
 /// A scene for both methods.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EqualTimeRun {
     /// Name of the shipped scene.
     pub scene: &'static str,
@@ -35,28 +36,37 @@ pub struct EqualTimeRun {
     pub full_seconds: u64,
     /// Whether beams are expected to win.
     pub beams_win: bool,
-    /// Whether the path tracer finds all light, so that it may be tested for bias and its
-    /// reference is the truth.
-    pub path_complete: bool,
+    /// Whose long render is the truth; the path tracer's own runs are then tested for bias.
+    pub referee: Referee,
+    /// The defect of all light that this test must find.
+    pub control: f64,
 }
 
 /// Each scene; caustics take long.
 pub fn all(effort: Effort) -> Experiments {
-    let mut list: Experiments = vec![Arc::new(EqualTimeRun {
+    let cornell_blocks = EqualTimeRun {
         scene: "cornell-blocks",
         full_seconds: 8,
         beams_win: true,
-        path_complete: true,
-    })];
+        referee: Referee::Path,
+        control: 1.1,
+    };
+    let mut list: Experiments = vec![Arc::new(cornell_blocks)];
     if effort == Effort::Full {
-        for (scene, path_complete) in [("mirror-caustic", true), ("mirror-caustic-point", false)] {
-            list.push(Arc::new(EqualTimeRun {
-                scene,
-                full_seconds: 3,
-                beams_win: false,
-                path_complete,
-            }));
-        }
+        list.push(Arc::new(EqualTimeRun {
+            scene: "mirror-caustic",
+            full_seconds: 4,
+            control: 1.2,
+            ..cornell_blocks
+        }));
+        // No path finds the caustics of its point lamp. They are sharper than any blur.
+        list.push(Arc::new(EqualTimeRun {
+            scene: "mirror-caustic-point",
+            full_seconds: 4,
+            beams_win: false,
+            referee: Referee::Light,
+            ..cornell_blocks
+        }));
     }
     list
 }
@@ -65,15 +75,14 @@ impl EqualTimeRun {
     fn compare(&self, context: &Context) -> Result<(EqualTime, Option<String>)> {
         let loaded = shipped(&context.scene_path(self.scene))?;
         let time = Duration::from_secs(40);
-        let (reference, note) = ReferenceCube::of_shipped(&loaded, self.scene, context, time)?;
+        let (reference, note) =
+            ReferenceCube::of_shipped(&loaded, self.scene, self.referee, context, time)?;
         let plan = EqualTimePlan {
             name: self.scene.into(),
             scene: &loaded.scene,
             reference: &reference,
-            methods: vec![
-                Estimator::Path(PathOptions::default()),
-                Estimator::Beams(BeamOptions::default()),
-            ],
+            methods: vec![self.referee.estimator(), Estimator::Beams(BeamOptions::default())],
+            control: self.control,
             time: Duration::from_secs(context.effort.pick(6, self.full_seconds)),
             replicates: context.effort.pick(5, 8),
             seed: context.seed.wrapping_mul(1000),
@@ -88,7 +97,8 @@ impl Experiment for EqualTimeRun {
     }
 
     fn description(&self) -> String {
-        format!("path and beams at equal time on {}, against a long path render", self.scene)
+        let name = self.referee.estimator().name();
+        format!("{name} and beams at equal time on {}, against a long {name} render", self.scene)
     }
 
     fn kind(&self) -> Kind {
@@ -97,30 +107,30 @@ impl Experiment for EqualTimeRun {
 
     fn run(&self, context: &Context) -> Result<Outcome> {
         let (result, note) = self.compare(context)?;
-        let [path, beams] = result.methods.as_slice() else {
+        let [baseline, beams] = result.methods.as_slice() else {
             return Ok(Outcome::exact(false, vec!["two methods are compared".into()]));
         };
-        let bias_p = EqualTime::bias_p(path);
-        let path_sound = !self.path_complete || bias_p > context.level;
-        let control_p = EqualTime::control_p(path);
-        let control_found = !self.path_complete || control_p <= context.level;
+        // Pixels of the light tracer share photons: the test is not for them.
+        let tested = self.referee == Referee::Path;
+        let bias_p = EqualTime::bias_p(baseline);
+        let sound = !tested || bias_p > context.level;
+        let control_found = !tested || EqualTime::control_p(baseline) <= context.level;
         let wins = result.factor.is_some_and(|factor| factor.p_at_most_one < RATIO_LEVEL);
         let resolved = beams.split.nmse.standard_error < 0.25 * beams.split.nmse.value;
         let mut notes: Vec<String> = note.into_iter().collect();
-        notes.extend(remarks(path, beams, path_sound, wins, resolved));
-        if self.path_complete {
+        notes.extend(remarks(baseline, beams, sound, wins, resolved));
+        if tested {
             let end = if control_found { "rejected, as it must be" } else { "NOT rejected" };
             notes.push(format!(
-                "control, all light of path times {CONTROL}: z = {:.1}, {end}",
-                path.control_z()
+                "control, all light of path times {}: z = {:.1}, {end}",
+                self.control,
+                baseline.control_z()
             ));
         }
-        let mut outcome = Outcome::exact(
-            path_sound && control_found && resolved && (wins || !self.beams_win),
-            notes,
-        );
-        outcome.worst_p = self.path_complete.then_some(bias_p);
-        outcome.false_alarm = if self.path_complete { context.level } else { 0.0 };
+        let mut outcome =
+            Outcome::exact(sound && control_found && resolved && (wins || !self.beams_win), notes);
+        outcome.worst_p = tested.then_some(bias_p);
+        outcome.false_alarm = if tested { context.level } else { 0.0 };
         outcome.unresolved =
             if self.beams_win { result.factor.map_or(1.0, |factor| factor.miss) } else { 0.0 };
         outcome.equal_time = Some(result);
@@ -129,31 +139,32 @@ impl Experiment for EqualTimeRun {
 }
 
 fn remarks(
-    path: &MethodResult,
+    baseline: &MethodResult,
     beams: &MethodResult,
-    path_sound: bool,
+    sound: bool,
     wins: bool,
     resolved: bool,
 ) -> Vec<String> {
     let mut notes = Vec::new();
     let relative = |interval: [f64; 2]| 100.0 * interval[1].max(0.0).sqrt();
     notes.push(format!(
-        "relative bias of the cube, upper end of the 95 % interval: path {:.2} % (pixel-wise), beams {:.2} %",
-        relative(path.pixel_bias.interval),
+        "relative bias of the cube, upper end of the 95 % interval: {} {:.2} % (pixel-wise), beams {:.2} %",
+        baseline.method,
+        relative(baseline.pixel_bias.interval),
         relative(beams.split.squared_bias.interval)
     ));
-    if !path_sound {
-        notes.push(format!("the path tracer is BIASED: z = {:.1}", path.bias_z()));
+    if !sound {
+        notes.push(format!("the path tracer is BIASED: z = {:.1}", baseline.bias_z()));
     }
     if !wins {
-        notes.push("beams are not better than path at equal time".into());
+        notes.push(format!("beams are not better than {} at equal time", baseline.method));
     }
     if !resolved {
         notes.push("the beams' error is not resolved".into());
     }
-    if fireflies(path) || fireflies(beams) {
+    if fireflies(baseline) || fireflies(beams) {
         let (ratio, [low, high]) =
-            bootstrap::ratio_of_medians(&path.work(), &beams.work(), CONFIDENCE);
+            bootstrap::ratio_of_medians(&baseline.work(), &beams.work(), CONFIDENCE);
         notes.push(format!("fireflies: ratio of medians {ratio:.2} ({low:.2} to {high:.2})"));
     }
     notes

@@ -177,6 +177,33 @@ fn numbers_of_photons_out_of_range_are_refused() {
     assert_eq!(made.expect("defaults").settings().photons_per_pass, 1 << 14);
 }
 
+/// A ball of fog, 200 mean free paths across, with a lamp in its middle: a photon is seen 1e4 times.
+#[test]
+fn thick_media_get_passes_of_fewer_photons() {
+    let lamp = scenes::point(DVec3::ZERO, Rgb::ONE);
+    let mut ball = scenes::shape("ball", vec![scenes::sphere(DVec3::ZERO, 1.0, false)], Bsdf::Null);
+    ball.boundary = Some(MediumBoundary { interior: Some(MediumId(0)), exterior: None });
+    let integrator = IntegratorSpec { rr_depth: u32::MAX, ..Default::default() };
+    let scene = Scene::assemble(SceneParts {
+        shapes: vec![ball],
+        media: vec![scenes::fog(0.0, 100.0, 0.0)],
+        textures: vec![],
+        emitters: vec![lamp],
+        background: None,
+        sensor: scenes::camera(DVec3::new(0.0, 0.0, 4.0), -DVec3::Z, 40.0, (4, 4)),
+        film: scenes::film(4, 4, 0.1, 60),
+        integrator,
+    })
+    .expect("a scene");
+    let plan = Plan::new(&scene, &integrator);
+    let made = LightTracer::<1>::new(&scene, &plan, integrator, &LightOptions::default());
+    let photons = made.expect("defaults").settings().photons_per_pass;
+    assert!((300..10_000).contains(&photons), "{photons}");
+    let asked = LightOptions { photons_per_pass: Some(5000) };
+    let made = LightTracer::<1>::new(&scene, &plan, integrator, &asked);
+    assert_eq!(made.expect("options").settings().photons_per_pass, 5000);
+}
+
 /// Without light nothing is traced, and the image is black.
 #[test]
 fn a_scene_without_light_is_black() {

@@ -25,10 +25,14 @@ pub(super) fn as_text(only: Option<&'static Solution>) -> String {
         let _ = writeln!(text, "    gives    {}", values.join(", "));
         let inputs =
             keys(&quantities(solution)).into_iter().map(|key| match default(solution, key) {
-                Some(default) => format!("{key} (default {default})"),
-                None => key.to_owned(),
+                Some(default) => format!("{} (default {default})", input(solution, key)),
+                None => input(solution, key),
             });
         let _ = writeln!(text, "    inputs   {}", inputs.collect::<Vec<_>>().join(", "));
+        if let Some(source) = solution.source() {
+            let _ = writeln!(text, "    formula  {}", source.formula);
+            let _ = writeln!(text, "    source   {}", source.origin);
+        }
         let validity = solution.approximate.map_or_else(
             || format!("exact, to {:.0e}", solution.tolerance.relative()),
             |validity| format!("APPROXIMATE: {validity}"),
@@ -41,6 +45,14 @@ pub(super) fn as_text(only: Option<&'static Solution>) -> String {
 fn value(solution: &Solution, quantity: &Quantity) -> String {
     let unit = solution.unit_of(quantity);
     quantity.name.map_or_else(|| format!("[{unit}]"), |name| format!("{name} [{unit}]"))
+}
+
+/// A key with its unit.
+fn input(solution: &Solution, key: &str) -> String {
+    match solution.unit_of_input(key) {
+        None | Some("1") => key.to_owned(),
+        Some(unit) => format!("{key} [{unit}]"),
+    }
 }
 
 fn default(solution: &Solution, key: &str) -> Option<&'static str> {
@@ -57,9 +69,15 @@ pub(super) fn as_json(only: Option<&'static Solution>) -> String {
         let defaults = solution.defaults.iter().map(|&(key, text)| {
             (key.to_owned(), serde_json::from_str(text).unwrap_or(Value::Null))
         });
+        let units = keys(&quantities(solution))
+            .into_iter()
+            .map(|key| (key.to_owned(), json!(solution.unit_of_input(key))));
         json!({
             "name": solution.name,
             "summary": solution.summary,
+            "formula": solution.source().map(|source| source.formula),
+            "source": solution.source().map(|source| source.origin),
+            "input_units": Value::Object(units.collect()),
             "exact": solution.approximate.is_none(),
             "validity": solution.approximate,
             "relative_tolerance": solution.tolerance.relative(),
