@@ -186,7 +186,7 @@ fn thick_media_get_passes_of_fewer_photons() {
     let integrator = IntegratorSpec { rr_depth: u32::MAX, ..Default::default() };
     let scene = Scene::assemble(SceneParts {
         shapes: vec![ball],
-        media: vec![scenes::fog(0.0, 100.0, 0.0)],
+        media: vec![scenes::fog(100.0, 100.0, 0.0)],
         textures: vec![],
         emitters: vec![lamp],
         background: None,
