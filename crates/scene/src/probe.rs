@@ -246,13 +246,25 @@ impl<'a> Probe<'a> {
             EmitterKind::Point { position, .. } | EmitterKind::Spot { position, .. } => {
                 self.around(&place, position)?
             }
-            EmitterKind::Laser { position, axis, .. } => self.votes(position, None, axis),
+            EmitterKind::Laser { position, axis, .. } => self.along(&place, position, axis)?,
             EmitterKind::Directional { position, axis, radius, .. } => {
                 self.across(&place, position, axis, radius)?
             }
             EmitterKind::Area { shape, .. } => self.before(&place, shape, true)?,
         };
         Ok(self.region(&votes))
+    }
+
+    /// The region around a laser: what its light meets tells; if an opaque surface stops it first,
+    /// all other directions do.
+    fn along(&self, place: &str, position: DVec3, axis: DVec3) -> Result<Votes, AssembleError> {
+        let mut votes = self.votes(position, None, axis);
+        if votes.medium.is_none() {
+            let around = self.around(place, position)?;
+            votes.medium = around.medium;
+            votes.eta = votes.eta.or(around.eta);
+        }
+        Ok(votes)
     }
 
     /// What boundaries say about the region before a disc that sends light along `axis`.

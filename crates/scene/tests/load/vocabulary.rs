@@ -7,8 +7,8 @@ use tpb_optics::{Phase, Rgb};
 use tpb_scene::description::{schema, schema_text};
 use tpb_scene::load::load_scene;
 use tpb_scene::{
-    Bsdf, EmitterKind, IntegratorSpec, MediumId, MethodName, PixelFormat, Primitive, Reflector,
-    Scene, TimeSpec,
+    Bsdf, Emitter, EmitterKind, IntegratorSpec, MediumId, MethodName, PixelFormat, Primitive,
+    Reflector, Scene, TimeSpec,
 };
 
 use crate::{SHIPPED, cornell_with, error_of, parse, scene_with, shipped_path};
@@ -197,6 +197,21 @@ fn lamps_are_placed_by_their_transforms() {
         panic!("a laser")
     };
     assert_eq!((axis, radius, power), (DVec3::Z, 0.01, Rgb::splat(3.0)));
+}
+
+/// Regression: a laser whose light met a wall first stood in a vacuum of its own, amid the fog.
+#[test]
+fn a_laser_that_faces_a_wall_stands_in_the_fog_around_it() {
+    for angle in [0, 90] {
+        let beam = format!(
+            r#"beam={{"type": "laser", "radius": 0.01,
+                "to_world": [{{"rotate": {{"axis": [0, 1, 0], "angle": {angle}}}}}]}}"#
+        );
+        let Ok(loaded) = cornell_with(&[&beam]) else { panic!("it loads") };
+        let laser = |e: &&Emitter| matches!(e.kind, EmitterKind::Laser { .. });
+        let beam = loaded.scene.emitters.iter().find(laser).expect("the laser");
+        assert!(beam.region.medium.is_some(), "turned by {angle} degrees");
+    }
 }
 
 #[test]
