@@ -11,6 +11,7 @@
 //! * [`equal_time`], [`reference_cube`]: methods against each other at equal time, and the long
 //!   render that both are compared with; [`judged`]: by whom, and in which pixels.
 //! * [`run_time`]: how the error of a method falls with the time it is given.
+//! * [`gallery`]: scenes that show what the renderer can do, and the page of them.
 //! * [`taps`]: photons at given optical path lengths, for what no camera sees.
 //! * [`suite`]: running many; [`report`], [`pages`]: what is printed and what is kept of it.
 
@@ -23,6 +24,7 @@ mod error;
 pub mod expected;
 pub mod experiment;
 pub mod experiments;
+pub mod gallery;
 pub mod judged;
 pub mod matrix;
 pub mod measure;

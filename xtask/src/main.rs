@@ -1,7 +1,9 @@
 //! Project tasks: parse, call, print. `cargo xtask` alone lists them.
 
 mod error_time;
+mod gallery;
 mod gate;
+mod meshes;
 mod schema;
 mod stress;
 mod tables;
@@ -37,6 +39,10 @@ enum Task {
     },
     /// Measures the error of each method against run time: tables, JSON, charts.
     ErrorTime(error_time::ErrorTimeArgs),
+    /// Renders the scenes of `scenes/` onto one page, or compares the methods on them.
+    Gallery(gallery::GalleryArgs),
+    /// Writes the meshes of the gallery's scenes.
+    Meshes,
     /// Renders the long reference cube of an equal-time comparison.
     ReferenceRender(validate::ReferenceRenderArgs),
     /// Checks scene.schema.json against the code, or writes it.
@@ -56,6 +62,8 @@ fn main() -> ExitCode {
         Task::Test => gate::run(),
         Task::Tables { dir } => tables::run(dir),
         Task::ErrorTime(args) => error_time::run(&args),
+        Task::Gallery(args) => gallery::run(&args),
+        Task::Meshes => meshes::run(),
         Task::ReferenceRender(args) => validate::reference_render(&args),
         Task::Schema { write } => schema::run(write),
         Task::Tidy => tidy::run(),

@@ -1,0 +1,207 @@
+//! Which scenes there are, and what is seen in them.
+//!
+//! A scene is a JSON file of the gallery's folder; what this catalogue does not know is shown all
+//! the same, under the name of its file.
+
+use std::path::{Path, PathBuf};
+
+use crate::error::{Result, ValidationError};
+
+/// A moment worth showing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// When: 0 is the begin of the film's window, 1 its end.
+    pub at: f64,
+    /// What is seen then.
+    pub seen: &'static str,
+}
+
+/// What people are told of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// Name of the file, without `.json`.
+    pub name: &'static str,
+    /// Title.
+    pub title: &'static str,
+    /// What it shows, in a sentence or two.
+    pub text: &'static str,
+    /// Three moments, in order.
+    pub moments: [Moment; 3],
+}
+
+/// A scene of the gallery.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GalleryScene {
+    /// Name of the file, without `.json`.
+    pub name: String,
+    /// The file.
+    pub file: PathBuf,
+    /// Title.
+    pub title: String,
+    /// What it shows; may be empty.
+    pub text: &'static str,
+    /// Three moments, in order.
+    pub moments: [Moment; 3],
+}
+
+const fn at(at: f64, seen: &'static str) -> Moment {
+    Moment { at, seen }
+}
+
+/// Moments of a scene that nobody has described.
+const ANY: [Moment; 3] = [at(0.3, ""), at(0.5, ""), at(0.7, "")];
+
+/// What is known, in the order of the page.
+pub const ENTRIES: [Entry; 9] = [
+    Entry {
+        name: "torus-knot",
+        title: "Glass knot",
+        text: "A pulse of a spot light meets a torus knot of tinted glass in fog. Light through the \
+               glass is late, and bent into caustics: sheets in the fog, lines on the floor.",
+        moments: [
+            at(0.30, "the front of the pulse, a bowl seen from its side, on its way to the knot"),
+            at(
+                0.45,
+                "the front with the shape of the knot cut out: glass slows it and bends it aside",
+            ),
+            at(
+                0.62,
+                "caustics run over the floor, the light from the glass behind the straight light",
+            ),
+        ],
+    },
+    Entry {
+        name: "laser-smoke",
+        title: "Laser through smoke",
+        text: "One pulse of a laser, off two mirrors onto a white ball: light in flight, as \
+               femto-photography films it. No path from the eye can find a laser; photon beams do.",
+        moments: [
+            at(0.25, "the pulse on its first leg; smoke and floor around it glow with its light"),
+            at(0.55, "the pulse on its way back from the right mirror"),
+            at(0.90, "the pulse has met the ball, whose light spreads through the smoke"),
+        ],
+    },
+    Entry {
+        name: "liquid",
+        title: "Liquid in a glass",
+        text: "A tumbler with a liquid that scatters and absorbs, lit from the left: three kinds of \
+               interfaces, smoke around. Light is slower in the liquid by a third.",
+        moments: [
+            at(0.30, "the front meets the glass and lights the liquid's edge"),
+            at(0.50, "in the liquid the front leans back behind the front outside"),
+            at(
+                0.70,
+                "the liquid glows with light that was scattered often; a caustic on the table",
+            ),
+        ],
+    },
+    Entry {
+        name: "window",
+        title: "A window",
+        text: "A spot light shines through a window with cross bars into dusty air: the front of the \
+               pulse carries the image of the window through the room.",
+        moments: [
+            at(0.35, "the image of the window enters the room"),
+            at(0.55, "it has met the ball; its lower edge runs over the floor"),
+            at(0.85, "it meets the table, which lights what is around it"),
+        ],
+    },
+    Entry {
+        name: "surfaces-only",
+        title: "Only surfaces",
+        text: "A flash lights a spot of the left wall; all else is its indirect light. There is no \
+               medium: the plan leaves out beams, free flights and transmittance.",
+        moments: [
+            at(0.45, "rings of light from the wall run over floor, ceiling and pillar"),
+            at(
+                0.65,
+                "the front has reached the back wall and is mirrored, rough, by the steel ball",
+            ),
+            at(0.80, "the front with the shadow of the pillar; the right wall lights up"),
+        ],
+    },
+    Entry {
+        name: "fog-only",
+        title: "Only fog",
+        text: "Three clouds of coloured fog in a haze, and a spot light. There is no surface: the plan \
+               leaves out surface photons, specular chains and, for beams, next-event estimation.",
+        moments: [
+            at(0.30, "the front enters the haze"),
+            at(0.55, "it lights the first cloud, and a second one"),
+            at(0.85, "shadows of the clouds, carried along by the front"),
+        ],
+    },
+    Entry {
+        name: "cornell-blocks",
+        title: "Cornell blocks",
+        text: "Two blocks in a room of fog, the scene of the paper's figure 2.",
+        moments: ANY,
+    },
+    Entry {
+        name: "mirrors",
+        title: "Mirrors",
+        text: "Fog, plane mirrors and a ball of glass, the scene of the paper's figure 3.",
+        moments: ANY,
+    },
+    Entry {
+        name: "mirrors-area",
+        title: "Mirrors, with a lamp that has an area",
+        text: "The same with a tiny lamp instead of a point, so that a path from the eye can meet it.",
+        moments: ANY,
+    },
+];
+
+/// All scenes of a folder, those of the catalogue first and in its order.
+///
+/// # Errors
+/// If the folder cannot be read.
+pub fn scenes_in(folder: &Path) -> Result<Vec<GalleryScene>> {
+    let io = |error| ValidationError::io(folder, error);
+    let mut scenes = Vec::new();
+    for file in std::fs::read_dir(folder).map_err(io)? {
+        let file = file.map_err(io)?.path();
+        let name = file.file_stem().and_then(|stem| stem.to_str());
+        if let (Some(name), Some("json")) = (name, file.extension().and_then(|e| e.to_str())) {
+            scenes.push(scene(name, &file));
+        }
+    }
+    let place = |name: &str| ENTRIES.iter().position(|entry| entry.name == name);
+    scenes.sort_by_key(|scene| (place(&scene.name).unwrap_or(ENTRIES.len()), scene.name.clone()));
+    Ok(scenes)
+}
+
+fn scene(name: &str, file: &Path) -> GalleryScene {
+    let known = ENTRIES.iter().find(|entry| entry.name == name);
+    GalleryScene {
+        name: name.to_owned(),
+        file: file.to_owned(),
+        title: known.map_or(name, |entry| entry.title).to_owned(),
+        text: known.map_or("", |entry| entry.text),
+        moments: known.map_or(ANY, |entry| entry.moments),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_are_in_order_and_in_the_window() {
+        for entry in &ENTRIES {
+            let [a, b, c] = entry.moments.map(|moment| moment.at);
+            assert!(0.0 <= a && a < b && b < c && c < 1.0, "{}", entry.name);
+        }
+    }
+
+    #[test]
+    fn known_scenes_come_first_and_unknown_ones_are_shown() {
+        let folder = tempfile::tempdir().expect("a folder");
+        for file in ["zebra.json", "window.json", "torus-knot.json", "notes.txt"] {
+            std::fs::write(folder.path().join(file), "{}").expect("a file");
+        }
+        let names: Vec<_> =
+            scenes_in(folder.path()).expect("scenes").into_iter().map(|scene| scene.name).collect();
+        assert_eq!(names, ["torus-knot", "window", "zebra"]);
+        assert!(scenes_in(&folder.path().join("nowhere")).is_err());
+    }
+}
