@@ -61,11 +61,11 @@ pub const ENTRIES: [Entry; 9] = [
         moments: [
             at(0.30, "the front of the pulse, a bowl seen from its side, on its way to the knot"),
             at(
-                0.45,
+                0.44,
                 "the front with the shape of the knot cut out: glass slows it and bends it aside",
             ),
             at(
-                0.62,
+                0.60,
                 "caustics run over the floor, the light from the glass behind the straight light",
             ),
         ],
@@ -87,10 +87,10 @@ pub const ENTRIES: [Entry; 9] = [
         text: "A tumbler with a liquid that scatters and absorbs, lit from the left: three kinds of \
                interfaces, smoke around. Light is slower in the liquid by a third.",
         moments: [
-            at(0.30, "the front meets the glass and lights the liquid's edge"),
-            at(0.50, "in the liquid the front leans back behind the front outside"),
+            at(0.35, "the front meets the glass and lights the liquid's edge"),
+            at(0.58, "in the liquid the front leans back behind the front outside"),
             at(
-                0.70,
+                0.80,
                 "the liquid glows with light that was scattered often; a caustic on the table",
             ),
         ],
@@ -101,9 +101,9 @@ pub const ENTRIES: [Entry; 9] = [
         text: "A spot light shines through a window with cross bars into dusty air: the front of the \
                pulse carries the image of the window through the room.",
         moments: [
-            at(0.35, "the image of the window enters the room"),
-            at(0.55, "it has met the ball; its lower edge runs over the floor"),
-            at(0.85, "it meets the table, which lights what is around it"),
+            at(0.31, "the image of the window enters the room"),
+            at(0.52, "it has met the ball; its lower edge runs over the floor"),
+            at(0.83, "it meets the table, which lights what is around it"),
         ],
     },
     Entry {
@@ -112,12 +112,12 @@ pub const ENTRIES: [Entry; 9] = [
         text: "A flash lights a spot of the left wall; all else is its indirect light. There is no \
                medium: the plan leaves out beams, free flights and transmittance.",
         moments: [
-            at(0.45, "rings of light from the wall run over floor, ceiling and pillar"),
+            at(0.44, "rings of light from the wall run over floor, ceiling and pillar"),
             at(
-                0.65,
+                0.66,
                 "the front has reached the back wall and is mirrored, rough, by the steel ball",
             ),
-            at(0.80, "the front with the shadow of the pillar; the right wall lights up"),
+            at(0.76, "the front with the shadow of the pillar; the right wall lights up"),
         ],
     },
     Entry {
@@ -126,9 +126,9 @@ pub const ENTRIES: [Entry; 9] = [
         text: "Three clouds of coloured fog in a haze, and a spot light. There is no surface: the plan \
                leaves out surface photons, specular chains and, for beams, next-event estimation.",
         moments: [
-            at(0.30, "the front enters the haze"),
-            at(0.55, "it lights the first cloud, and a second one"),
-            at(0.85, "shadows of the clouds, carried along by the front"),
+            at(0.22, "the front enters the haze"),
+            at(0.44, "it lights the first cloud, and a second one"),
+            at(0.72, "shadows of the clouds, carried along by the front"),
         ],
     },
     Entry {
