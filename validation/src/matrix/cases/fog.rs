@@ -171,7 +171,7 @@ impl Case for Fog {
             // A mixture of channels has no closed form along a short beam.
             (false, "coloured") if player.is_variant() => effort.pick(8, 16),
             (false, "forward") => effort.pick(25, 35),
-            (false, _) => effort.pick(10, 14),
+            (false, _) => effort.pick(10, 18),
         };
         Budget { paths: 10_000, photons: 10_000, rays, passes, radius: RADIUS }
     }

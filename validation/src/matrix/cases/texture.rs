@@ -117,7 +117,7 @@ impl Case for Textured {
         let (photons, rays, passes) = match player.family {
             Family::Path => (0, 0, few),
             Family::Light => (40_000, 0, few),
-            Family::Beams { .. } => (25_000, 8, few),
+            Family::Beams { .. } => (25_000, 8, effort.pick(1, 3)),
         };
         let paths = if player.is_baseline() { 3000 } else { 500 };
         Budget { paths, photons, rays, passes, radius: RADIUS }
