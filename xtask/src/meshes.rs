@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use tpb_validation::gallery::meshes::MESHES;
+use tpb_validation::gallery::meshes::{MESHES, MeshFile};
 
 use crate::workspace::{Outcome, root, say};
 
@@ -10,8 +10,8 @@ use crate::workspace::{Outcome, root, say};
 pub(crate) fn run() -> Outcome {
     let folder = root().join("scenes/meshes");
     fs::create_dir_all(&folder)?;
-    for (name, mesh) in MESHES {
-        let bytes = mesh().to_ply();
+    for MeshFile { name, make } in MESHES {
+        let bytes = make().to_ply();
         fs::write(folder.join(name), &bytes)?;
         say(&format!("scenes/meshes/{name}: {} bytes", bytes.len()));
     }

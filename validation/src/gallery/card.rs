@@ -212,18 +212,19 @@ fn left_out(plan: &Value) -> Vec<LeftOut> {
 
 /// As many passes of the same seed make the same arrays, to the bit.
 fn command(scene: &GalleryScene, report: &Report) -> String {
-    let mut command = format!(
+    let mut words = vec![format!(
         "cargo run --release -- render scenes/{}.json --method {} --passes {} --seed {}",
         scene.name, report.method.name, report.run.passes, report.options.run.seed
-    );
+    )];
     let film = &report.scene.canonical["sensor"]["film"];
     for key in ["width", "height", "temporal_bins", "start_opl", "bin_width_opl"] {
         let own = original(scene, key);
         if own.as_ref().is_some_and(|own| !same(own, &film[key])) {
-            command += &format!(" --set sensor.film.{key}={}", film[key]);
+            words.push(format!("--set sensor.film.{key}={}", film[key]));
         }
     }
-    command + &format!(" -o {}", scene.name)
+    words.push(format!("-o {}", scene.name));
+    words.join(" ")
 }
 
 /// What a scene's own file says of its film.

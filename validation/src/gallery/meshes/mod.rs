@@ -31,12 +31,25 @@ pub struct Mesh {
     pub triangles: Vec<[u16; 3]>,
 }
 
-/// All meshes: name of the file and what is in it.
-pub const MESHES: [(&str, fn() -> Mesh); 4] = [
-    ("torus-knot.ply", torus_knot),
-    ("tumbler-air-glass.ply", air_glass),
-    ("tumbler-glass-liquid.ply", glass_liquid),
-    ("tumbler-liquid-air.ply", liquid_air),
+/// A tracked mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshFile {
+    /// Name of the file.
+    pub name: &'static str,
+    /// What is in it.
+    pub make: fn() -> Mesh,
+}
+
+const fn file(name: &'static str, make: fn() -> Mesh) -> MeshFile {
+    MeshFile { name, make }
+}
+
+/// All meshes.
+pub const MESHES: [MeshFile; 4] = [
+    file("torus-knot.ply", torus_knot),
+    file("tumbler-air-glass.ply", air_glass),
+    file("tumbler-glass-liquid.ply", glass_liquid),
+    file("tumbler-liquid-air.ply", liquid_air),
 ];
 
 impl Mesh {
@@ -80,9 +93,9 @@ mod tests {
     #[test]
     fn the_tracked_files_are_what_is_made_here() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/meshes");
-        for (name, mesh) in MESHES {
+        for MeshFile { name, make } in MESHES {
             let tracked = std::fs::read(folder.join(name)).expect(name);
-            assert!(tracked == mesh().to_ply(), "{name} differs: `cargo xtask meshes` writes it");
+            assert!(tracked == make().to_ply(), "{name} differs: `cargo xtask meshes` writes it");
             assert!(tracked.len() < 400_000, "{name} has {} bytes", tracked.len());
         }
         let files = std::fs::read_dir(&folder).expect("the folder").count();
@@ -91,8 +104,8 @@ mod tests {
 
     #[test]
     fn normals_have_length_one_and_are_those_of_the_faces_nearly() {
-        for (name, mesh) in MESHES {
-            let mesh = mesh();
+        for MeshFile { name, make } in MESHES {
+            let mesh = make();
             for vertex in &mesh.vertices {
                 assert!((vertex.normal.length() - 1.0).abs() < 1e-12, "{name}: {vertex:?}");
             }
