@@ -1,22 +1,11 @@
-//! Style and scripts of the page. Scripts are one program: each file is a subject, and they are
-//! joined, in this order, inside one function, so that their names meet nobody else's.
+//! Style and scripts of the page, after those of all pages (`tpb_page`).
 
 /// The page around them, with places `{{…}}` for title, style, data and scripts.
 pub(crate) const PAGE: &str = include_str!("../assets/page.html");
 
-/// uPlot 1.6.32, MIT: `assets/vendor/SOURCE.md`.
-pub(crate) const UPLOT_SCRIPT: &str = include_str!("../assets/vendor/uPlot.iife.min.js");
-
-/// Its licence, which goes with every copy.
-pub(crate) const UPLOT_LICENCE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
-
 /// Style sheets.
-pub(crate) const STYLES: [&str; 4] = [
-    include_str!("../assets/vendor/uPlot.min.css"),
-    include_str!("../assets/css/theme.css"),
-    include_str!("../assets/css/layout.css"),
-    include_str!("../assets/css/parts.css"),
-];
+pub(crate) const STYLES: [&str; 2] =
+    [include_str!("../assets/css/layout.css"), include_str!("../assets/css/parts.css")];
 
 /// Scripts.
 pub(crate) const SCRIPTS: [&str; 17] = [

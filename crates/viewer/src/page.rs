@@ -10,9 +10,10 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use tpb_film::{Arrays, FilmError, atomic_write};
+use tpb_page::{Document, document, json_element};
 
 use crate::ViewerError;
-use crate::assets::{PAGE, SCRIPTS, STYLES, UPLOT_LICENCE, UPLOT_SCRIPT};
+use crate::assets::{PAGE, SCRIPTS, STYLES};
 use crate::comparison::{Comparison, Method};
 use crate::manifest::{Judgement, manifest};
 use crate::pack::PackedMethod;
@@ -144,12 +145,8 @@ fn html(
     judgements: &[Judgement],
 ) -> Result<String, ViewerError> {
     let (manifest, streams) = manifest(comparison, factors, first, packed, judgements);
-    let json = serde_json::to_string(&manifest)
+    let mut data = json_element("manifest", &manifest)
         .map_err(|error| ViewerError::Comparison(format!("cannot be written: {error}")))?;
-    let mut data = format!(
-        "<script type=\"application/json\" id=\"manifest\">{}</script>\n",
-        json.replace('<', "\\u003c")
-    );
     for (name, stream) in streams.named() {
         data.push_str("<script type=\"application/octet-stream\" id=\"");
         data.push_str(&name);
@@ -157,36 +154,13 @@ fn html(
         STANDARD.encode_string(&stream.bytes, &mut data);
         data.push_str("</script>\n");
     }
-    let scripts = SCRIPTS.concat();
-    let parts = [
-        ("title", escape(&comparison.title)),
-        ("style", STYLES.concat()),
-        ("data", data),
-        ("uplot", format!("/*\n{UPLOT_LICENCE}*/\n{UPLOT_SCRIPT}")),
-        ("scripts", format!("(() => {{\n\"use strict\";\n{scripts}}})();\n")),
-    ];
-    Ok(fill(PAGE, &parts))
-}
-
-/// A text with its places filled, in one sweep: what is filled in is not looked at again.
-fn fill(template: &str, parts: &[(&str, String)]) -> String {
-    let size: usize = parts.iter().map(|part| part.1.len()).sum();
-    let mut out = String::with_capacity(template.len() + size);
-    let mut rest = template;
-    while let Some((before, after)) = rest.split_once("{{") {
-        out.push_str(before);
-        let (name, after) = after.split_once("}}").unwrap_or((after, ""));
-        let part = parts.iter().find(|part| part.0 == name);
-        out.push_str(part.map_or("", |part| part.1.as_str()));
-        rest = after;
-    }
-    out.push_str(rest);
-    out
-}
-
-/// Text inside an element.
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    Ok(document(&Document {
+        template: PAGE,
+        title: &comparison.title,
+        styles: &STYLES,
+        data: &data,
+        scripts: &SCRIPTS,
+    }))
 }
 
 #[cfg(test)]

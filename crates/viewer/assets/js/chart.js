@@ -12,7 +12,6 @@ const AXIS_DECADES = 6;
 
 const chart = { plot: null, config: "", range: [0, 1], edges: [] };
 
-const cssValue = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const methodColour = (v, index) =>
   cssValue(v.cubes[index].entry.reference ? "--ink" : `--method-${index % 9}`);
 
@@ -44,23 +43,6 @@ function timeRange(v) {
   const half = (ZOOMED / 2) * (ends[1] - ends[0]);
   const middle = Math.min(ends[1] - half, Math.max(ends[0] + half, 0.5 * (v.edges[state.bin] + v.edges[state.bin + 1])));
   return [middle - half, middle + half].map((edge) => v.time.of(edge));
-}
-
-/** Powers of ten between two values. */
-function decades(low, high) {
-  const all = [];
-  for (let power = Math.ceil(Math.log10(low)); power <= Math.log10(high); power++) all.push(10 ** power);
-  return all;
-}
-
-/** Up to seven even ticks at 1, 2 or 5 times a power of ten, however small the values are. */
-function evenTicks(low, high) {
-  const rough = (high - low) / 7;
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * [1, 2, 5, 10].find((factor) => factor * power >= 0.999 * rough);
-  const all = [];
-  for (let at = Math.ceil(low / step); at <= high / step; at++) all.push(at * step);
-  return all;
 }
 
 /** A range of the vertical axis around the curves (bands may leave it). */
@@ -101,8 +83,6 @@ function chartData(v) {
 }
 
 function chartOptions(v, box) {
-  const ink = cssValue("--muted");
-  const grid = { stroke: cssValue("--line"), width: 1 };
   const paths = uPlot.paths.stepped({ align: 1 });
   const none = { show: false };
   const series = [{}];
@@ -117,7 +97,7 @@ function chartOptions(v, box) {
     });
     bands.push({ series: [3 * index + 2, 3 * index + 1], fill: `color-mix(in srgb, ${colour} 18%, transparent)` });
   });
-  const axis = { stroke: ink, grid, ticks: grid, font: "12px system-ui, sans-serif", labelFont: "12px system-ui, sans-serif" };
+  const axis = axisStyle();
   return {
     width: box.clientWidth, height: box.clientHeight, legend: none,
     series, bands,

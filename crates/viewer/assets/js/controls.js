@@ -62,7 +62,7 @@ function buildControls(v) {
   byId("theme").addEventListener("click", toggleTheme);
   byId("help-open").addEventListener("click", toggleHelp);
   byId("help-close").addEventListener("click", toggleHelp);
-  listKeys();
+  listKeys([...KEYS.map((key) => key[1]), "shift and arrows: move the selected pixel"]);
 }
 
 /** Makes the controls show the state. */
@@ -122,14 +122,4 @@ const nextMetric = (v) => v.reference && nextOf("metric", "metric");
 const nextCurve = () => nextOf("curve", "curve");
 const expose = (stops) => update({ exposure: Math.min(12, Math.max(-12, state.exposure + stops)) });
 
-/** Whether the page is dark now. */
-function isDark() {
-  const chosen = document.documentElement.dataset.theme;
-  return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-}
-
-function toggleTheme() {
-  const dark = isDark();
-  document.documentElement.dataset.theme = dark ? "light" : "dark";
-  update({ theme: document.documentElement.dataset.theme });
-}
+const toggleTheme = () => update({ theme: flipTheme() });

@@ -1,4 +1,4 @@
-// Keys. Controls that use a key themselves (sliders, lists, buttons) keep it.
+// Keys.
 
 /** What keys do: [keys, what for the help, action(v, event)]. */
 const KEYS = [
@@ -29,16 +29,6 @@ const KEYS = [
 /** What shift and arrows do. */
 const MOVES = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** Whether the focused control wants a key for itself. */
-function ownKey(target, key) {
-  if (byId("help").open) return key !== "?";
-  const kind = target.tagName === "INPUT" ? target.type : target.tagName;
-  if (kind === "SELECT") return true;
-  if (kind === "BUTTON" || kind === "checkbox") return key === " " || key === "Enter";
-  const moves = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "Home", "End", "PageUp", "PageDown"];
-  return kind === "range" && moves.includes(key);
-}
-
 /** Moves the selected cell of the view by one. */
 function moveSelection(v, [dx, dy]) {
   const { width, height } = v.view.size(v);
@@ -65,18 +55,4 @@ function announce(v) {
   settled().then(() => {
     if (!state.playing) byId("live").textContent = stage.canvas.getAttribute("aria-label");
   });
-}
-
-function listKeys() {
-  const entries = [...KEYS.map((key) => key[1]), "shift and arrows: move the selected pixel"];
-  byId("help-keys").replaceChildren(...entries.flatMap((text) => {
-    const [keys, what] = text.split(/: (.*)/);
-    return [element("dt", { text: keys }), element("dd", { text: what })];
-  }));
-}
-
-function toggleHelp() {
-  const help = byId("help");
-  if (help.open) help.close();
-  else help.showModal();
 }

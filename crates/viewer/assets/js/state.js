@@ -1,6 +1,6 @@
-// What is shown, in one object; whoever changes it calls `update`, whoever draws it listens.
+// What is shown.
 
-const state = {
+Object.assign(state, {
   method: 0,
   view: "frame",
   bin: 0,
@@ -18,42 +18,7 @@ const state = {
   playing: false,
   speed: 20, // bins per second
   zooms: {}, // per kind of view: {scale, x, y}
-};
-
-const listeners = [];
-let changed = new Set();
-let scheduled = null;
-
-/** Changes the state; listeners are called once, before the next picture. */
-function update(changes) {
-  for (const [name, value] of Object.entries(changes)) {
-    if (state[name] !== value) {
-      state[name] = value;
-      changed.add(name);
-    }
-  }
-  if (changed.size > 0 && scheduled === null) {
-    scheduled = new Promise((resolve) => requestAnimationFrame(() => {
-      const names = changed;
-      changed = new Set();
-      scheduled = null;
-      for (const listener of listeners) listener(names);
-      resolve();
-    }));
-  }
-}
-
-/** Calls `listener` when any of the named parts of the state has changed. */
-function onChange(names, listener) {
-  listeners.push((changes) => {
-    if (names.some((name) => changes.has(name))) listener(changes);
-  });
-}
-
-/** Resolves when everything is drawn. */
-async function settled() {
-  while (scheduled !== null) await scheduled;
-}
+});
 
 /** Reads a link such as `#method=beams&view=error&bin=40&pixel=12,30&exposure=1`. */
 function readLink(viewer) {

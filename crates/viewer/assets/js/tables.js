@@ -85,22 +85,6 @@ function drawProvenance(v) {
   byId("provenance").replaceChildren(...v.cubes.map(card));
 }
 
-function commandBox(command) {
-  const text = element("code", { text: command });
-  const copy = element("button", { type: "button", text: "Copy" });
-  copy.addEventListener("click", async () => {
-    try {
-      await navigator.clipboard.writeText(command);
-      copy.textContent = "Copied";
-    } catch {
-      getSelection().selectAllChildren(text);
-      copy.textContent = "Selected";
-    }
-  });
-  const box = element("pre", { tabindex: "0" }, [text]);
-  return element("div", { className: "command" }, [box, copy]);
-}
-
 function drawPacking(v) {
   const { shape, rendered, factors, program, code } = v.manifest;
   const size = (s) => `${s.width} × ${s.height} pixels${s.bins ? ` × ${s.bins} bins` : ""}`;
