@@ -13,7 +13,8 @@
 //! * [`run_time`]: how the error of a method falls with the time it is given.
 //! * [`gallery`]: scenes that show what the renderer can do, and the page of them.
 //! * [`taps`]: photons at given optical path lengths, for what no camera sees.
-//! * [`suite`]: running many; [`report`], [`pages`]: what is printed and what is kept of it.
+//! * [`suite`]: running many; [`report`], [`pages`]: what is printed and what is kept of it;
+//!   [`history`]: a run as a line for the dashboard.
 
 mod artefacts;
 pub mod comparison;
@@ -25,6 +26,7 @@ pub mod expected;
 pub mod experiment;
 pub mod experiments;
 pub mod gallery;
+pub mod history;
 pub mod judged;
 pub mod matrix;
 pub mod measure;

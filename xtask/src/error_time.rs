@@ -13,6 +13,7 @@ use tpb_validation::reference_cube::ReferenceCube;
 use tpb_validation::run_time::{Clock, ErrorAgainstTime, RunTimePlan};
 use tpb_validation::{ValidationError, scenes, with_threads};
 
+use crate::circumstances;
 use crate::workspace::{Outcome, root, say};
 
 /// Options of `cargo xtask error-time`.
@@ -80,6 +81,7 @@ fn measure(args: &ErrorTimeArgs, scene: &str) -> Result<ErrorAgainstTime, Valida
         time: args.time,
         replicates: args.replicates,
         seed: args.seed,
+        circumstances: circumstances::of(args.threads, args.seed),
     };
     plan.run(|method, replicate| say(&format!("{scene}: {method}, run {}", replicate + 1)))
 }

@@ -1,5 +1,8 @@
 //! Project tasks: parse, call, print. `cargo xtask` alone lists them.
 
+mod circumstances;
+mod dashboard;
+mod doctor;
 mod error_time;
 mod gallery;
 mod gate;
@@ -43,6 +46,10 @@ enum Task {
     Gallery(gallery::GalleryArgs),
     /// Writes the meshes of the gallery's scenes.
     Meshes,
+    /// Writes experiments, errors against run time and benchmarks as a page: target/dashboard.
+    Dashboard(dashboard::DashboardArgs),
+    /// Says which of the tools that tests, pages and videos need are there, and how to get the rest.
+    Doctor,
     /// Renders the long reference cube of an equal-time comparison.
     ReferenceRender(validate::ReferenceRenderArgs),
     /// Checks scene.schema.json against the code, or writes it.
@@ -64,6 +71,8 @@ fn main() -> ExitCode {
         Task::ErrorTime(args) => error_time::run(&args),
         Task::Gallery(args) => gallery::run(&args),
         Task::Meshes => meshes::run(),
+        Task::Dashboard(args) => dashboard::run(&args),
+        Task::Doctor => doctor::run(),
         Task::ReferenceRender(args) => validate::reference_render(&args),
         Task::Schema { write } => schema::run(write),
         Task::Tidy => tidy::run(),

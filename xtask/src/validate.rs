@@ -1,18 +1,23 @@
 //! `cargo xtask validate` and `cargo xtask reference-render`: parse, call `tpb-validation`, print.
 
+use std::error::Error;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
 use clap::Args;
+use tpb_dashboard::lines;
 use tpb_validation::experiment::{Context, Effort, Experiment};
 use tpb_validation::judged::Referee;
 use tpb_validation::reference_cube::ReferenceCube;
-use tpb_validation::suite::Circumstances;
-use tpb_validation::{registry, report, scenes, suite, with_threads};
-use xshell::{Shell, cmd};
+use tpb_validation::suite::SuiteResult;
+use tpb_validation::{history, registry, report, scenes, suite, with_threads};
 
+use crate::circumstances::{self, commit};
 use crate::workspace::{Outcome, root, say};
+
+/// Name of the file of all runs, one line each.
+pub(crate) const HISTORY: &str = "history.jsonl";
 
 /// Examples below the options.
 const EXAMPLES: &str = "Examples:
@@ -22,7 +27,8 @@ const EXAMPLES: &str = "Examples:
 
 Exit codes: 0 passed, 1 an experiment failed, 2 usage or files.
 A report (report.md) and all results (results.json) are written to --out. A failing experiment leaves
-its contrasts, maps and plots there too, and prints the command that repeats it.";
+its contrasts, maps and plots there too, and prints the command that repeats it. Each run is a line
+of history.jsonl there, from which `cargo xtask dashboard` draws.";
 
 /// Options of `cargo xtask validate`.
 #[derive(Args)]
@@ -49,7 +55,10 @@ pub(crate) struct ValidateArgs {
     /// Threads [default: all]
     #[arg(long)]
     threads: Option<usize>,
-    /// Folder of report.md, results.json, and of the tables and plots of experiments that fail
+    /// Also keep the run in validation/history.jsonl, which is under version control
+    #[arg(long)]
+    record: bool,
+    /// Folder of report.md, results.json, history.jsonl, and of the tables and plots of experiments that fail
     /// [default: target/validation]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -100,13 +109,15 @@ pub(crate) fn run(args: &ValidateArgs) -> Outcome {
         let full = if args.full { " --full" } else { "" };
         format!("cargo xtask validate{full} --seed {} --filter '{name}'", args.seed)
     };
+    let about = circumstances::of(args.threads, args.seed);
     let result = with_threads(args.threads, || {
-        suite::run_suite(&chosen, &context, circumstances(args), repeat, |record| {
+        suite::run_suite(&chosen, &context, about, repeat, |record| {
             say(&report::line(record, width));
             say_all(&report::remarks(record));
         })
     })?;
     suite::write_results(&result, &context.out)?;
+    remember(&result, args, &context)?;
     if let Some(path) = &args.json {
         suite::write_json(&result, path)?;
     }
@@ -114,6 +125,20 @@ pub(crate) fn run(args: &ValidateArgs) -> Outcome {
     say_all(&report::summary(&result));
     say(&format!("report: {}", context.out.join("report.md").display()));
     Ok(result.passed())
+}
+
+/// Adds the run to the histories that the dashboard reads.
+fn remember(
+    result: &SuiteResult,
+    args: &ValidateArgs,
+    context: &Context,
+) -> Result<(), Box<dyn Error>> {
+    let line = [history::line(result, context.effort, &root())];
+    lines::append(&context.out.join(HISTORY), &line)?;
+    if args.record {
+        lines::append(&context.data.join(HISTORY), &line)?;
+    }
+    Ok(())
 }
 
 /// Renders and writes a reference cube.
@@ -140,37 +165,8 @@ pub(crate) fn reference_render(args: &ReferenceRenderArgs) -> Outcome {
     Ok(true)
 }
 
-/// What the report says of this run.
-fn circumstances(args: &ValidateArgs) -> Circumstances {
-    let threads = args
-        .threads
-        .or_else(|| std::thread::available_parallelism().ok().map(usize::from))
-        .map_or("all threads".to_owned(), |count| format!("{count} threads"));
-    let processor = std::fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
-        let line = text.lines().find(|line| line.starts_with("model name"))?;
-        Some(line.split_once(':')?.1.trim().to_owned())
-    });
-    let processor = processor.unwrap_or_else(|| std::env::consts::ARCH.to_owned());
-    Circumstances {
-        commit: commit(),
-        machine: format!("{processor}, {threads}, {}", std::env::consts::OS),
-        flags: std::env::args().skip(1).collect::<Vec<_>>().join(" "),
-        seed: args.seed,
-    }
-}
-
 fn say_all(lines: &[String]) {
     for line in lines {
         say(line);
     }
-}
-
-/// The commit of the sources, with a mark if they differ from it.
-fn commit() -> String {
-    let described = || -> Result<String, xshell::Error> {
-        let sh = Shell::new()?;
-        sh.change_dir(root());
-        cmd!(sh, "git describe --always --dirty --abbrev=12").quiet().ignore_stderr().read()
-    };
-    described().unwrap_or_else(|_| "unknown".into())
 }

@@ -22,6 +22,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     page.prefer("prefers-color-scheme", if has("dark") { "dark" } else { "light" })?;
     page.viewport(if has("phone") { Viewport::PHONE } else { Viewport::DESKTOP })?;
     page.wait_for("!window.tpbViewer === !document.getElementById('stage')")?;
+    page.wait_for("!window.tpbDashboard === !document.getElementById('experiments')")?;
     for option in &options {
         if let Some(link) = option.strip_prefix("link=") {
             page.evaluate(&format!("location.hash = '{link}'"))?;

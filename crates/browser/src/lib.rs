@@ -23,6 +23,14 @@ pub use keys::Modifiers;
 pub use page::{Page, Viewport};
 pub use pipe::Browser;
 
+/// The program that [`Browser::start`] would start.
+///
+/// # Errors
+/// [`BrowserError::Missing`].
+pub fn find_program() -> Result<PathBuf, BrowserError> {
+    program::find()
+}
+
 /// Errors of this crate.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

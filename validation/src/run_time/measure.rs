@@ -87,6 +87,7 @@ impl RunTimePlan<'_> {
             replicates: self.replicates,
             seed: self.seed,
             threads: rayon::current_num_threads(),
+            circumstances: self.circumstances.clone(),
             curves: curves.collect(),
         })
     }

@@ -28,6 +28,7 @@ use tpb_scene::Scene;
 use crate::measure::Estimator;
 use crate::reference_cube::{Provenance, ReferenceCube};
 use crate::statistics::split::Estimate;
+use crate::suite::Circumstances;
 
 pub use draw::Clock;
 
@@ -50,6 +51,8 @@ pub struct RunTimePlan<'a> {
     pub replicates: u64,
     /// Seed of the first run.
     pub seed: u64,
+    /// Where and how it is measured; noted, not used.
+    pub circumstances: Circumstances,
 }
 
 /// Errors of all methods on one scene against run time.
@@ -69,6 +72,9 @@ pub struct ErrorAgainstTime {
     pub seed: u64,
     /// Threads that the methods ran on.
     pub threads: usize,
+    /// Where and how it was measured, for readers.
+    #[serde(default)]
+    pub circumstances: Circumstances,
     /// One for each method.
     pub curves: Vec<Curve>,
 }

@@ -1,0 +1,165 @@
+//! Pages that other commands write: what is there is linked, what is missing is named with the
+//! command that makes it.
+
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde::Serialize;
+
+use crate::benchmarks::seconds;
+
+/// Where a command leaves its pages.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shelf {
+    /// What the pages are, as a heading.
+    pub title: String,
+    /// The folder; pages are its `index.html` and those of the folders in it.
+    pub folder: PathBuf,
+    /// The command that makes them.
+    pub command: String,
+}
+
+/// A shelf with what was found.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Filled {
+    pub(crate) title: String,
+    pub(crate) command: String,
+    pub(crate) pages: Vec<Found>,
+}
+
+/// A page.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Found {
+    /// Its own title, or the folder's name.
+    pub(crate) title: String,
+    /// Its address, relative to the dashboard's.
+    pub(crate) link: String,
+    pub(crate) bytes: u64,
+    /// Its last change \[s since 1970, UTC\].
+    pub(crate) time: u64,
+    /// A small picture beside it, as a data address.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) picture: Option<String>,
+}
+
+/// Largest picture that is taken into the page \[bytes\].
+const PICTURE: u64 = 400_000;
+
+/// Names of pictures that stand for a page.
+const PICTURES: [&str; 3] = ["thumbnail.png", "thumbnail.jpg", "thumbnail.svg"];
+
+/// Looks for the pages of a shelf; `from` is the folder from which they are linked.
+pub(crate) fn fill(shelf: &Shelf, from: &Path) -> Filled {
+    let mut folders = vec![shelf.folder.clone()];
+    let inside = fs::read_dir(&shelf.folder).into_iter().flatten().flatten();
+    let mut inner: Vec<PathBuf> = inside.map(|entry| entry.path()).collect();
+    inner.sort();
+    folders.extend(inner.into_iter().filter(|path| path.is_dir()));
+    Filled {
+        title: shelf.title.clone(),
+        command: shelf.command.clone(),
+        pages: folders.iter().filter_map(|folder| page(folder, from)).collect(),
+    }
+}
+
+fn page(folder: &Path, from: &Path) -> Option<Found> {
+    let file = folder.join("index.html");
+    let about = file.metadata().ok().filter(fs::Metadata::is_file)?;
+    let name = folder.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    Some(Found {
+        title: title(&file).unwrap_or(name),
+        link: relative(&file, from)?,
+        bytes: about.len(),
+        time: about.modified().map_or(0, seconds),
+        picture: PICTURES.iter().find_map(|name| picture(&folder.join(name), PICTURE)),
+    })
+}
+
+/// The title that a page gives itself.
+fn title(file: &Path) -> Option<String> {
+    use std::io::Read;
+    let mut start = Vec::new();
+    fs::File::open(file).ok()?.take(4096).read_to_end(&mut start).ok()?;
+    let start = String::from_utf8_lossy(&start);
+    let (_, after) = start.split_once("<title>")?;
+    let (title, _) = after.split_once("</title>")?;
+    let plain = title.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"");
+    let plain = plain.replace("&#39;", "'").replace("&amp;", "&").trim().to_owned();
+    (!plain.is_empty()).then_some(plain)
+}
+
+/// A picture as a data address, if it is one and no larger than `most` bytes.
+pub(crate) fn picture(file: &Path, most: u64) -> Option<String> {
+    let kind = match file.extension()?.to_str()? {
+        "png" => "image/png",
+        "jpg" | "jpeg" => "image/jpeg",
+        "svg" => "image/svg+xml",
+        _ => return None,
+    };
+    if file.metadata().ok()?.len() > most {
+        return None;
+    }
+    Some(format!("data:{kind};base64,{}", STANDARD.encode(fs::read(file).ok()?)))
+}
+
+/// The address of a file relative to a folder; both exist.
+pub(crate) fn relative(file: &Path, from: &Path) -> Option<String> {
+    let (file, from) = (file.canonicalize().ok()?, from.canonicalize().ok()?);
+    let shared = file.components().zip(from.components()).take_while(|(a, b)| a == b).count();
+    let up = from.components().skip(shared).map(|_| "..".to_owned());
+    let down = file.components().skip(shared).map(|part| match part {
+        Component::Normal(name) => encode(&name.to_string_lossy()),
+        other => encode(&other.as_os_str().to_string_lossy()),
+    });
+    Some(up.chain(down).collect::<Vec<_>>().join("/"))
+}
+
+/// A part of a path as it stands in an address.
+fn encode(part: &str) -> String {
+    let mut out = String::with_capacity(part.len());
+    for byte in part.bytes() {
+        if byte.is_ascii_alphanumeric() || b"-_.~".contains(&byte) {
+            out.push(char::from(byte));
+        } else {
+            out.push_str(&format!("%{byte:02X}"));
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pages_are_found_with_title_and_address() {
+        let folder = tempfile::tempdir().unwrap();
+        let shelf = folder.path().join("reproduce");
+        let from = folder.path().join("dashboard/deep");
+        fs::create_dir_all(&from).unwrap();
+        let shelf_of = |folder: &Path| Shelf {
+            title: "Scenes".into(),
+            folder: folder.to_owned(),
+            command: "make".into(),
+        };
+        assert_eq!(fill(&shelf_of(&shelf), &from).pages, []);
+        for (name, text) in [("b, 100 %", "<title>A &lt;b&gt; &amp; c </title>"), ("a", "no title")]
+        {
+            fs::create_dir_all(shelf.join(name)).unwrap();
+            fs::write(shelf.join(name).join("index.html"), text).unwrap();
+        }
+        fs::create_dir_all(shelf.join("empty")).unwrap();
+        fs::write(shelf.join("a/thumbnail.png"), "png").unwrap();
+        let pages = fill(&shelf_of(&shelf), &from).pages;
+        let told: Vec<_> = pages.iter().map(|p| (p.title.as_str(), p.link.as_str())).collect();
+        let expected = [
+            ("a", "../../reproduce/a/index.html"),
+            ("A <b> & c", "../../reproduce/b%2C%20100%20%25/index.html"),
+        ];
+        assert_eq!(told, expected);
+        assert_eq!(pages[0].picture.as_deref(), Some("data:image/png;base64,cG5n"));
+        assert_eq!(pages[1].picture, None);
+    }
+}
