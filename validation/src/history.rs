@@ -5,7 +5,8 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use tpb_dashboard::history;
 
-use crate::experiment::{Effort, Experiment, Verdict};
+use crate::experiment::{Effort, Experiment, Outcome, Verdict};
+use crate::experiments::calibration::Rate;
 use crate::registry;
 use crate::suite::{Record, SuiteResult};
 
@@ -47,10 +48,17 @@ fn record(found: &Record, root: &Path) -> history::Record {
         batches: outcome.map_or(0, |o| o.batches),
         contrasts: outcome.map_or(0, |o| o.contrasts.len()),
         notes: outcome.map_or_else(Vec::new, |o| o.notes.clone()),
+        table: outcome.map_or_else(Vec::new, table),
         error: found.error.clone(),
         repeat: failed.then(|| found.repeat.clone()),
         files: found.files.iter().map(named).collect(),
     }
+}
+
+/// What an outcome has beside its contrasts.
+fn table(outcome: &Outcome) -> Vec<String> {
+    let equal_time = outcome.equal_time.iter().flat_map(|table| table.table());
+    equal_time.chain(outcome.calibration.iter().map(Rate::line)).collect()
 }
 
 /// All experiments, with what a dashboard says of those that were never run.
@@ -76,7 +84,7 @@ pub fn plan() -> Vec<tpb_dashboard::Planned> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::{Kind, Outcome};
+    use crate::experiment::Kind;
     use crate::suite::Circumstances;
     use tpb_dashboard::{history::Run, lines};
 

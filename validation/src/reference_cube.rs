@@ -38,7 +38,7 @@ use crate::statistics::ReferenceNoise;
 const LARGEST: f64 = 32_768.0;
 
 /// Where a reference comes from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Program and version.
     pub program: String,

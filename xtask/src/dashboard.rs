@@ -27,6 +27,9 @@ pub(crate) struct DashboardArgs {
     /// Open the page in a browser
     #[arg(long)]
     open: bool,
+    /// Also keep new benchmarks in benches/history.jsonl, which is under version control
+    #[arg(long)]
+    record: bool,
     /// Folder in which other tasks left their results [default: target]
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
@@ -40,7 +43,10 @@ pub(crate) fn run(args: &DashboardArgs) -> Outcome {
     let from = args.from.clone().unwrap_or_else(|| root().join("target"));
     let kept = root().join("benches").join(HISTORY);
     let collected = from.join("benchmarks").join(HISTORY);
-    collect(&from.join("criterion"), &[&collected, &kept])?;
+    collect(&from.join("criterion"), &collected)?;
+    if args.record {
+        collect(&from.join("criterion"), &kept)?;
+    }
     let report = tpb_dashboard::write(&Sources {
         commit: commit(),
         machine: machine(None),
@@ -65,18 +71,15 @@ pub(crate) fn run(args: &DashboardArgs) -> Outcome {
     Ok(true)
 }
 
-/// Adds what Criterion.rs left, and no history has yet, to the first of the histories.
-fn collect(criterion: &Path, histories: &[&PathBuf]) -> Result<(), Box<dyn std::error::Error>> {
-    let mut known: Vec<Benchmark> = Vec::new();
-    for history in histories {
-        known.extend(lines::read(history)?.values);
-    }
+/// Adds what Criterion.rs left, and a history does not have yet, to it.
+fn collect(criterion: &Path, history: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    let known: Vec<Benchmark> = lines::read(history)?.values;
     let commit =
         |time| (commit_before(time).unwrap_or_else(|| "unknown".to_owned()), CommitBy::Time);
     let found = benchmarks::collect(criterion, &known, &machine(None), commit)?;
+    lines::append(history, &found)?;
     if !found.is_empty() {
-        lines::append(histories[0], &found)?;
-        say(&format!("{} benchmarks added to {}", found.len(), histories[0].display()));
+        say(&format!("{} benchmarks added to {}", found.len(), history.display()));
     }
     Ok(())
 }

@@ -241,7 +241,7 @@ mod tests {
         assert!(
             lines
                 .iter()
-                .all(|l| l.elements == Some(50) && l.commit == "abc" && l.time > 1e9 as u64)
+                .all(|l| l.elements == Some(50) && l.commit == "abc" && l.time > 1_000_000_000)
         );
         assert_eq!(collect(folder.path(), &lines, "m", commit).unwrap(), []);
         assert_eq!(collect(folder.path(), &lines[..1], "m", commit).unwrap(), lines[1..]);

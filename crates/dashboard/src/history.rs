@@ -10,7 +10,8 @@
 //! | `records` | one for each experiment that was run |
 //!
 //! A record has `name`, `verdict`, `seconds`, `interval` (relative error), `p`, `batches`,
-//! `contrasts` (their number), `notes`, and, where it did not pass, `error`, `repeat` and `files`.
+//! `contrasts` (their number), `notes`, `table` (lines of one), and, where it did not pass, `error`,
+//! `repeat` and `files`.
 //! Fields that are missing are empty, those that are unknown are left out, and numbers that are not
 //! finite are `null`: lines of older and newer versions are read alike.
 
@@ -90,6 +91,9 @@ pub struct Record {
     /// Remarks for the reader.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
+    /// A table in letters of one width, such as that of an equal-time comparison.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub table: Vec<String>,
     /// Why it broke.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,

@@ -1,6 +1,7 @@
 //! Pages that other commands write: what is there is linked, what is missing is named with the
 //! command that makes it.
 
+use std::fmt::Write;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -15,7 +16,7 @@ use crate::benchmarks::seconds;
 pub struct Shelf {
     /// What the pages are, as a heading.
     pub title: String,
-    /// The folder; pages are its `index.html` and those of the folders in it.
+    /// The folder; pages are the HTML files in it and in its folders.
     pub folder: PathBuf,
     /// The command that makes them.
     pub command: String,
@@ -47,30 +48,50 @@ pub(crate) struct Found {
 /// Largest picture that is taken into the page \[bytes\].
 const PICTURE: u64 = 400_000;
 
-/// Names of pictures that stand for a page.
-const PICTURES: [&str; 3] = ["thumbnail.png", "thumbnail.jpg", "thumbnail.svg"];
+/// Names of pictures that stand for a page: beside `index.html`, or in the folder that is named like
+/// the page.
+const PICTURES: [&str; 4] = ["thumbnail.png", "thumbnail.svg", "sequence.png", "steady.png"];
 
 /// Looks for the pages of a shelf; `from` is the folder from which they are linked.
 pub(crate) fn fill(shelf: &Shelf, from: &Path) -> Filled {
-    let mut folders = vec![shelf.folder.clone()];
-    let inside = fs::read_dir(&shelf.folder).into_iter().flatten().flatten();
-    let mut inner: Vec<PathBuf> = inside.map(|entry| entry.path()).collect();
-    inner.sort();
-    folders.extend(inner.into_iter().filter(|path| path.is_dir()));
+    let mut files = pages(&shelf.folder);
+    for folder in entries(&shelf.folder).into_iter().filter(|path| path.is_dir()) {
+        files.extend(pages(&folder));
+    }
     Filled {
         title: shelf.title.clone(),
         command: shelf.command.clone(),
-        pages: folders.iter().filter_map(|folder| page(folder, from)).collect(),
+        pages: files.iter().filter_map(|file| page(file, from)).collect(),
     }
 }
 
-fn page(folder: &Path, from: &Path) -> Option<Found> {
-    let file = folder.join("index.html");
-    let about = file.metadata().ok().filter(fs::Metadata::is_file)?;
+/// What is in a folder, by name; nothing if it cannot be read.
+fn entries(folder: &Path) -> Vec<PathBuf> {
+    let found = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut paths: Vec<PathBuf> = found.map(|entry| entry.path()).collect();
+    paths.sort();
+    paths
+}
+
+/// The HTML files of a folder, its index first.
+fn pages(folder: &Path) -> Vec<PathBuf> {
+    let html = |path: &PathBuf| path.is_file() && path.extension().is_some_and(|e| e == "html");
+    let mut files: Vec<PathBuf> = entries(folder).into_iter().filter(html).collect();
+    files.sort_by_key(|file| !is_index(file));
+    files
+}
+
+fn is_index(file: &Path) -> bool {
+    file.file_name().is_some_and(|name| name == "index.html")
+}
+
+fn page(file: &Path, from: &Path) -> Option<Found> {
+    let about = file.metadata().ok()?;
+    let folder = if is_index(file) { file.parent()?.to_owned() } else { file.with_extension("") };
     let name = folder.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     Some(Found {
-        title: title(&file).unwrap_or(name),
-        link: relative(&file, from)?,
+        title: title(file).unwrap_or(name),
+        link: relative(file, from)?,
         bytes: about.len(),
         time: about.modified().map_or(0, seconds),
         picture: PICTURES.iter().find_map(|name| picture(&folder.join(name), PICTURE)),
@@ -123,7 +144,8 @@ fn encode(part: &str) -> String {
         if byte.is_ascii_alphanumeric() || b"-_.~".contains(&byte) {
             out.push(char::from(byte));
         } else {
-            out.push_str(&format!("%{byte:02X}"));
+            // Writing to a text cannot fail.
+            let _ = write!(out, "%{byte:02X}");
         }
     }
     out
@@ -151,15 +173,24 @@ mod tests {
             fs::write(shelf.join(name).join("index.html"), text).unwrap();
         }
         fs::create_dir_all(shelf.join("empty")).unwrap();
+        fs::write(shelf.join("a/viewer.html"), "<title>V</title>").unwrap();
+        fs::write(shelf.join("empty.html"), "").unwrap();
+        fs::write(shelf.join("index.html"), "<title>All</title>").unwrap();
+        fs::write(shelf.join("table.md"), "").unwrap();
         fs::write(shelf.join("a/thumbnail.png"), "png").unwrap();
+        fs::write(shelf.join("empty/steady.png"), "png").unwrap();
         let pages = fill(&shelf_of(&shelf), &from).pages;
         let told: Vec<_> = pages.iter().map(|p| (p.title.as_str(), p.link.as_str())).collect();
         let expected = [
+            ("All", "../../reproduce/index.html"),
+            ("empty", "../../reproduce/empty.html"),
             ("a", "../../reproduce/a/index.html"),
+            ("V", "../../reproduce/a/viewer.html"),
             ("A <b> & c", "../../reproduce/b%2C%20100%20%25/index.html"),
         ];
         assert_eq!(told, expected);
-        assert_eq!(pages[0].picture.as_deref(), Some("data:image/png;base64,cG5n"));
-        assert_eq!(pages[1].picture, None);
+        let pictures: Vec<_> = pages.iter().map(|page| page.picture.as_deref()).collect();
+        let data = Some("data:image/png;base64,cG5n");
+        assert_eq!(pictures, [None, data, data, None, None]);
     }
 }

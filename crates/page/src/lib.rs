@@ -20,10 +20,14 @@ pub const UPLOT_SCRIPT: &str = include_str!("../assets/vendor/uPlot.iife.min.js"
 /// Its licence, which goes with every copy.
 pub const UPLOT_LICENCE: &str = include_str!("../assets/vendor/uPlot-LICENSE");
 
+/// The colours, dark and light, as custom properties of the root element: all that pages without
+/// script need.
+pub const THEME: &str = include_str!("../assets/css/theme.css");
+
 /// Style sheets of all pages.
 pub const STYLES: [&str; 4] = [
     include_str!("../assets/vendor/uPlot.min.css"),
-    include_str!("../assets/css/theme.css"),
+    THEME,
     include_str!("../assets/css/base.css"),
     include_str!("../assets/css/parts.css"),
 ];

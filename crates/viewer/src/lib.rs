@@ -32,8 +32,8 @@
 //! ```
 //!
 //! A link may say what is shown first: `page.html#method=path&view=error&bin=40&pixel=12,30`, also
-//! `exposure` (stops) and `theme`; views are `frame`, `steady`, `xt`, `yt`, `mean`, `peak`, `error`,
-//! `steady-error`, `before`, `after`.
+//! `exposure` (stops) and `theme`; views are `frame`, `steady`, `xt`, `yt`, `arrival`, `mean`, `peak`,
+//! `error`, `steady-error`, `before`, `after`.
 //!
 //! Not handled: results of different shapes or time axes; progressive loading of large pages.
 

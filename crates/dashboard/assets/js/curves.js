@@ -15,10 +15,13 @@ function shownScene(data) {
   const all = data.error_time.scenes;
   const scene = all.find((candidate) => candidate.scene === state.scene) ?? all[0];
   const hidden = state.hidden.split(" ");
-  const curves = scene.curves.map((curve, index) => ({
-    curve, index, points: curvePoints(curve, state.clock, state.metric), shown: !hidden.includes(curve.method),
+  return { scene, curves: curvesOf(scene, (method) => !hidden.includes(method)) };
+}
+
+function curvesOf(scene, isShown) {
+  return scene.curves.map((curve, index) => ({
+    curve, index, points: curvePoints(curve, state.clock, state.metric), shown: isShown(curve.method),
   }));
-  return { scene, curves };
 }
 
 const curveColour = (index) => `--method-${index % 9}`;
@@ -51,8 +54,8 @@ function errorColumns(curves, floor) {
   return uPlot.join(tables);
 }
 
-/** The comparison's time and error: the reader's, or where the curves still meet. */
-function comparedAt(curves) {
+/** The comparison's time and error: those chosen, or where the curves still meet. */
+function comparedAt(curves, chosen = state) {
   const shown = curves.filter((c) => c.shown && c.points.length > 0);
   const base = baseOf(curves);
   const ends = shown.map((c) => c.points.at(-1).t);
@@ -63,8 +66,8 @@ function comparedAt(curves) {
   const within = (value, [low, high]) => Math.min(high, Math.max(low, value));
   return {
     times, errors,
-    time: within(state.atTime ?? times[1], times),
-    error: within(state.atError ?? base?.points.at(-1)?.value ?? errors[0], errors),
+    time: within(chosen.atTime ?? times[1], times),
+    error: within(chosen.atError ?? base?.points.at(-1)?.value ?? errors[0], errors),
   };
 }
 
@@ -244,6 +247,31 @@ function drawFactors(data) {
   byId("factors-note").textContent = `Over 1: better than ${base.curve.method}. [95 % intervals], both curves taken as independent; straight lines between checkpoints, nothing extrapolated (≥, ≤: a curve ends before). Slope: of NMSE against CPU time; −1 for independent samples without bias.`;
 }
 
+/** All scenes and methods at equal time: the longest that all methods of a scene have. */
+function drawAllScenes(data) {
+  const rows = data.error_time.scenes.flatMap((scene) => {
+    const curves = curvesOf(scene, () => true);
+    const compared = comparedAt(curves, {});
+    const base = baseOf(curves);
+    return curves.map((c, index) => {
+      const at = valueAt(c.points, compared.time);
+      const ends = at ? [at.value * Math.exp(-at.down), at.value * Math.exp(at.up)] : null;
+      return element("tr", {}, [
+        element("th", { scope: "row", text: index === 0 ? scene.scene : "" }),
+        element("td", {}, [element("span", { className: `swatch method-${c.index % 9}`, "aria-hidden": "true" }), document.createTextNode(c.curve.method)]),
+        cell(`${digits(compared.time)} s`, "number"),
+        cell(at ? `${digits(at.value)} [${digits(ends[0])}, ${digits(ends[1])}]` : "–", "number"),
+        cell(c === base ? "1" : factorText(factorAtTime(base.points, c.points, compared.time)), "number"),
+        cell(c === base ? "1" : factorText(factorAtError(base.points, c.points, compared.error)), "number"),
+      ]);
+    });
+  });
+  byId("all-scenes").replaceChildren(
+    tableHead([["scene"], ["method"], [CLOCKS[state.clock], true], [`${ERROR_METRICS[state.metric].label} then`, true], ["less error at that time", true], ["faster to the base's last error", true]]),
+    element("tbody", {}, rows),
+  );
+}
+
 /** All checkpoints in numbers. */
 function drawPoints(data) {
   const { scene, curves } = shownScene(data);
@@ -297,4 +325,5 @@ function drawErrors(data) {
   drawErrorChart(data);
   drawFactors(data);
   drawPoints(data);
+  drawAllScenes(data);
 }

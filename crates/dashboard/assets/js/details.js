@@ -18,8 +18,16 @@ function detailsOf(data, row) {
   return [
     element("div", { className: "details-grid" }, [left, right]),
     ...controlsOf(row),
+    ...tableOf(record),
     ...picturesOf(data, row),
   ];
+}
+
+/** A table that is text. */
+function tableOf(record) {
+  if (!record?.table?.length) return [];
+  const lines = element("pre", { tabindex: "0", className: "text-table", text: record.table.join("\n") });
+  return [element("h3", { text: "Table" }), lines];
 }
 
 function factsOf(run, record) {

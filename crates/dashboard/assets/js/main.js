@@ -60,6 +60,7 @@ function buildOverview(data) {
   byId("remarks").replaceChildren(...data.remarks.map((text) => element("p", { className: "card note remark", text })));
   byId("remarks").hidden = data.remarks.length === 0;
   drawLatestRun(data);
+  drawMap(data);
 }
 
 function drawOverview(data) {

@@ -18,6 +18,25 @@ function drawCounts(data) {
   byId("counts-note").textContent = controls.length ? `${rejected} of ${controls.length} negative controls were rejected, as they must be. ${note}` : note;
 }
 
+/** All experiments at a glance, with a gap between groups: for the mouse, the table is for all. */
+function drawMap(data) {
+  const nodes = [];
+  let group = null;
+  for (const row of data.overview.rows.filter((r) => r.suite !== "")) {
+    if (group !== null && groupOf(row) !== group) nodes.push(element("span", { className: "gap" }));
+    group = groupOf(row);
+    const verdict = stateOf(row);
+    const square = element("span", { className: VERDICTS[verdict].tone, title: `${row.name}: ${VERDICTS[verdict].word}` });
+    square.addEventListener("click", () => {
+      byId("find").value = "";
+      update({ open: row.name, find: "", verdict: "all" });
+      settled().then(() => experimentButton(row.name)?.scrollIntoView({ block: "center" }));
+    });
+    nodes.push(square);
+  }
+  byId("map").replaceChildren(...nodes);
+}
+
 function drawLatestRun(data) {
   const run = data.overview.runs.at(-1);
   byId("runs-section").hidden = !run;

@@ -61,13 +61,17 @@ function drawBars(u, x, lows, highs, colour) {
   ctx.restore();
 }
 
-/** A range around all finite numbers, with some room; `zero` is in it if asked for. */
+/**
+ * A range around all finite numbers, with some room; `zero` is in it if asked for. Otherwise it
+ * spans a fifth of the largest at least, so that small changes look small.
+ */
 function roomy(numbers, zero) {
   const finite = numbers.filter((n) => n !== null && n !== undefined && Number.isFinite(n));
   if (zero) finite.push(0);
   if (finite.length === 0) return [0, 1];
   const [low, high] = [Math.min(...finite), Math.max(...finite)];
-  const room = 0.08 * (high - low) || Math.abs(high) * 0.1 || 1;
+  const least = zero ? 0 : 0.2 * Math.max(Math.abs(low), Math.abs(high));
+  const room = Math.max(0.08 * (high - low), 0.5 * (least - (high - low))) || 1;
   return [low - room, high + room];
 }
 

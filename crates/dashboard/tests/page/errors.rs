@@ -146,6 +146,19 @@ fn factors_are_those_of_the_power_laws() {
         assert_eq!(rows[1][2], "≥ 32.0");
         assert_eq!(rows[1][3], "−0.80 [−0.85, −0.75]");
         assert_eq!(rows[0][1], "1");
+        // The same in the table of all scenes, with the error itself.
+        let all = ask(
+            page,
+            "[...document.querySelectorAll('#all-scenes tbody tr')].map((r) => [...r.children].map((c) => c.innerText).join('|'))",
+        );
+        assert_eq!(all.as_array().unwrap().len(), 4, "two scenes of two methods");
+        let nmse = law(1, ENDS[1]);
+        let expected = format!(
+            "|beams|5.12 s|{nmse:.5} [{:.5}, {:.5}]|{shown}|≥ 32.0",
+            nmse * (1.0 - HALF),
+            nmse * (1.0 + HALF)
+        );
+        assert_eq!(all[1], expected);
         press(page, &["b"]);
         assert_eq!(text(page, "#factors tbody tr:nth-child(2) td"), "1", "over beams now");
     });

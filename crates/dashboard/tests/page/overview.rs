@@ -75,6 +75,7 @@ fn a_failed_experiment_says_what_was_noted_and_how_to_repeat_it() {
             "3 contrasts, 64 batches",
             "not rejected",
             "left/wrong.svg, left/gone.png",
+            "method   NMSE\nbeams  1.3e-2 < 2",
         ] {
             assert!(details.contains(part), "{part} is missing in {details}");
         }

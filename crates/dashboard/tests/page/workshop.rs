@@ -112,6 +112,7 @@ fn runs() -> String {
         |low: f64, high: f64| record("matrix/fog/path", "passed", json!([low, high]), json!(0.5));
     let late = record("control/late/matrix/fog/path", "passed", json!([0.1, 0.2]), json!(1e-30));
     let mut failed = record("matrix/fog/beams-1d", "failed", json!([0.012, 0.034]), json!(1e-9));
+    failed["table"] = json!(["method   NMSE", "beams  1.3e-2 < 2"]);
     failed["repeat"] = json!("cargo xtask validate --seed 1 --filter 'matrix/fog/beams-1d'");
     failed["files"] = json!(["left/wrong.svg", "left/gone.png"]);
     failed["notes"] = json!(["most significant: bin 12 (z = 9.1)"]);

@@ -109,7 +109,7 @@ function chartOptions(v, box) {
       { ...axis, size: 34, label: v.manifest.timed ? `time [${v.time.name}]` : "bin", labelSize: 16 },
       {
         ...axis, size: 58, splits: (u, index, low, high) => (isLog() ? decades(low, high) : evenTicks(low, high)),
-        values: (u, ticks) => ticks.map((t) => (t === null ? "" : digits(t, 2))),
+        values: (u, ticks) => ticks.map((t) => (t === null ? "" : digits(t, isLog() ? 1 : 2))),
       },
     ],
     cursor: { drag: { x: false, y: false }, y: false, points: none },
@@ -191,6 +191,7 @@ function describeChart(v, data) {
     const reduced = v.manifest.factors.some((factor) => factor > 1) || (state.channel === "luminance" && v.channels === 3);
     notes.push(`bands: 95 %, ±${v.manifest.interval} standard errors${reduced ? " (an upper bound: bins, pixels or channels that were added may err together)" : ""}`);
   }
+  else if (kind === "pixel") notes.push("no bands: these results carry no variance (tpb render --variance keeps it)");
   if (kind !== "pixel") notes.push("over all pixels and channels, at full size");
   byId("chart-note").textContent = notes.join(" · ");
 }

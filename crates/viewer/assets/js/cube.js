@@ -1,5 +1,8 @@
 // One result: its cells, images, standard errors, and what is computed from them once.
 
+/** Light has arrived in a pixel once a bin reaches this part of its brightest one. */
+const ARRIVAL = 0.1;
+
 /** Weights of linear sRGB in luminance (Rec. 709). */
 const LUMINANCE = [0.2126, 0.7152, 0.0722];
 
@@ -67,11 +70,12 @@ class Cube {
     return LUMINANCE[0] * image[0][pixel] + LUMINANCE[1] * image[1][pixel] + LUMINANCE[2] * image[2][pixel];
   }
 
-  /** Mean and peak time of each pixel, in fractions of bins' index space; NaN where dark. */
+  /** When light arrives, its mean time and that of its peak for each pixel [edges' unit]; NaN where dark. */
   times(edges) {
     if (this.cachedTimes) return this.cachedTimes;
     const mean = new Float64Array(this.pixels);
     const peak = new Float64Array(this.pixels);
+    const arrival = new Float64Array(this.pixels);
     for (let pixel = 0; pixel < this.pixels; pixel++) {
       let energy = 0;
       let moment = 0;
@@ -90,9 +94,18 @@ class Cube {
       }
       mean[pixel] = energy > 0 ? moment / energy : NaN;
       peak[pixel] = bestTime;
+      arrival[pixel] = this.arrivalTime(edges, pixel, best);
     }
-    this.cachedTimes = { mean, peak };
+    this.cachedTimes = { mean, peak, arrival };
     return this.cachedTimes;
+  }
+
+  /** Centre of the first bin that reaches the stated part of the pixel's brightest bin. */
+  arrivalTime(edges, pixel, brightest) {
+    if (!(brightest > 0)) return NaN;
+    let bin = 0;
+    while (!(this.reading(bin, pixel, "luminance") >= ARRIVAL * brightest)) bin++;
+    return 0.5 * (edges[bin] + edges[bin + 1]);
   }
 }
 

@@ -52,8 +52,14 @@ function timeScale(v, which) {
     const [low, high] = times.length ? [at(0.01), at(0.99)] : [0, 1];
     v[key] = { map: "time", low, high: high > low ? high : low + 1, text: (t) => v.time.text(t) };
   }
-  return { ...v[key], label: which === "mean" ? "mean time of arrival, weighted by energy" : "time of the brightest bin" };
+  return { ...v[key], label: TIME_LABELS[which] };
 }
+
+const TIME_LABELS = {
+  arrival: `arrival: first bin that reaches ${100 * ARRIVAL} % of the pixel's brightest`,
+  mean: "mean time of arrival, weighted by energy",
+  peak: "time of the brightest bin",
+};
 
 const streakWhite = (v) => cubeWhite(v.leader);
 
@@ -87,6 +93,8 @@ const VIEWS = [
     place: (v, x, y) => ({ bin: x, y }),
     unit: (v) => v.unit,
   },
+  mapView("arrival", "Arrival", (v, cube, pixel) => cube.times(v.edges).arrival[pixel],
+    (v) => timeScale(v, "arrival"), { timed: true, energies: true, hint: TIME_LABELS.arrival }),
   mapView("mean", "Mean time", (v, cube, pixel) => cube.times(v.edges).mean[pixel],
     (v) => timeScale(v, "mean"), { timed: true, energies: true }),
   mapView("peak", "Peak time", (v, cube, pixel) => cube.times(v.edges).peak[pixel],
@@ -116,6 +124,7 @@ function describeView(v) {
     steady: "Steady image, light of all times",
     xt: `Streak of row ${v.row(state.y)}: columns across, time downwards`,
     yt: `Streak of column ${v.column(state.x)}: time across, rows downwards`,
+    arrival: "Time at which light arrives",
     mean: "Mean time of arrival",
     peak: "Time of the brightest bin",
     error: `Error of the frame at ${frame}, ${METRICS[state.metric].label}`,

@@ -112,7 +112,7 @@ fn every_other_key_does_what_the_help_says() {
             views.insert(ask(page, "tpbViewer.state.view").as_str().unwrap().to_owned());
         }
         assert_eq!(views.len() as u64, count, "v shows every view in turn");
-        assert_eq!(count, 10);
+        assert_eq!(count, 11);
         page.press_with("V", shift).unwrap();
         assert_state(page, "view", "after");
         press(page, &["?"]);

@@ -1,6 +1,6 @@
 //! Colours on the canvas are those of the values.
 
-use crate::scene::{Scene, cell};
+use crate::scene::{BIN, SHAPE, Scene, cell};
 use crate::{ask, press, with_page};
 
 /// The colour at the middle of a cell on the stage.
@@ -65,10 +65,16 @@ fn white_is_the_references_for_all_methods() {
 
 #[test]
 fn maps_tell_times_within_a_bin() {
-    let scene = Scene::new(1);
+    let mut scene = Scene::new(1);
+    // A pixel that is dim, then lit, then brightest; one that stays dark.
+    let cells = &mut scene.reference.transient[..2 * SHAPE.2];
+    cells.fill(0.0);
+    for (bin, value) in [(5, 0.05), (8, 0.2), (20, 1.0)] {
+        cells[bin] = value;
+    }
     with_page(&scene.comparison(), |page| {
         ask(page, "tpbViewer.update({ view: 'peak' })");
-        for (x, y) in [(0, 0), (5, 3), (13, 9)] {
+        for (x, y) in [(5, 3), (13, 9)] {
             let read = format!(
                 "tpbViewer.viewer.view.read(tpbViewer.viewer, tpbViewer.viewer.cubes[2], {x}, {y})"
             );
@@ -76,6 +82,18 @@ fn maps_tell_times_within_a_bin() {
             let front = 3.0 + 0.9 * f64::from(x) + 1.1 * f64::from(y);
             let exact = 2.0 + 0.06 * (front.ceil() + 0.5);
             assert!((found - exact).abs() < 1e-9, "{x} {y}: {found} m for {exact} m");
+        }
+        let middle = |bin: f64| 2.0 + BIN * (bin + 0.5);
+        let mean = (0.05 * middle(5.0) + 0.2 * middle(8.0) + middle(20.0)) / 1.25;
+        for (view, exact) in [("arrival", middle(8.0)), ("mean", mean), ("peak", middle(20.0))] {
+            ask(page, &format!("tpbViewer.update({{ view: '{view}' }})"));
+            let read = |x| {
+                let v = "tpbViewer.viewer";
+                format!("String({v}.view.read({v}, {v}.cubes[2], {x}, 0))")
+            };
+            let found: f64 = ask(page, &read(0)).as_str().unwrap().parse().unwrap();
+            assert!((found / exact - 1.0).abs() < 1e-4, "{view}: {found} m for {exact} m");
+            assert_eq!(ask(page, &read(1)), "NaN", "{view}: what is dark has no time");
         }
         let low = ask(page, "document.getElementById('scale-low').textContent");
         assert!(low.as_str().unwrap().ends_with(" ns"), "{low}");
