@@ -40,7 +40,7 @@ fn both_themes_can_be_read() {
                 press(page, &[tab]);
                 page.wait_for("document.getAnimations().length === 0").unwrap();
                 let script = format!(
-                    "[...document.querySelectorAll('{elements}')].filter((e) => e.offsetParent !== null) \
+                    "[...document.querySelectorAll('{elements}')].filter((e) => e.offsetParent !== null && e.innerText) \
                      .map((e) => [{CONTRAST}(e), e.outerHTML.slice(0, 120)]).sort((a, b) => a[0] - b[0])[0]"
                 );
                 let least = ask(page, &script);

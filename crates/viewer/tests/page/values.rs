@@ -232,7 +232,10 @@ fn odd_cells_times_without_a_unit_and_steady_films_are_shown() {
         press(page, &["Home"]);
         assert_eq!(ask(page, "document.getElementById('time-text').textContent"), "1/40");
         let views = ask(page, "tpbViewer.viewer.views.map((view) => view.name).join()");
-        assert_eq!(views, "frame,steady,xt,yt,mean,peak,before,after", "nothing to err against");
+        assert_eq!(
+            views, "frame,steady,xt,yt,arrival,mean,peak,before,after",
+            "nothing to err against"
+        );
     });
     let steady = steady();
     with_page(&Comparison::new("steady", vec![Method::new("s", "s", &steady)]), |page| {
