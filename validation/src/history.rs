@@ -5,6 +5,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use tpb_dashboard::history;
 
+use crate::equal_time::EqualTime;
 use crate::experiment::{Effort, Experiment, Outcome, Verdict};
 use crate::experiments::calibration::Rate;
 use crate::registry;
@@ -57,7 +58,7 @@ fn record(found: &Record, root: &Path) -> history::Record {
 
 /// What an outcome has beside its contrasts.
 fn table(outcome: &Outcome) -> Vec<String> {
-    let equal_time = outcome.equal_time.iter().flat_map(|table| table.table());
+    let equal_time = outcome.equal_time.iter().flat_map(EqualTime::table);
     equal_time.chain(outcome.calibration.iter().map(Rate::line)).collect()
 }
 

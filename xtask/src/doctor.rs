@@ -93,13 +93,11 @@ pub(crate) fn run() -> Outcome {
 
 fn line(tool: &Tool) -> String {
     let Tool { name, purpose, install, .. } = tool;
-    match &tool.found {
-        Some(found) => format!("  there     {name:<9} {found}"),
-        None => {
-            let state = if tool.needed { "MISSING " } else { "optional" };
-            format!("  {state}  {name:<9} for {purpose}\n            {:<9} install: {install}", "")
-        }
+    if let Some(found) = &tool.found {
+        return format!("  there     {name:<9} {found}");
     }
+    let state = if tool.needed { "MISSING " } else { "optional" };
+    format!("  {state}  {name:<9} for {purpose}\n            {:<9} install: {install}", "")
 }
 
 #[cfg(test)]

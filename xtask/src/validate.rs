@@ -33,6 +33,7 @@ of history.jsonl there, from which `cargo xtask dashboard` draws.";
 /// Options of `cargo xtask validate`.
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line are independent")]
 pub(crate) struct ValidateArgs {
     /// At most 4 minutes on 2 cores (the default)
     #[arg(long, conflicts_with = "full")]

@@ -9,12 +9,12 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use tpb_film::atomic_write;
+use tpb_page::{THEME, escape};
 
 use super::card::{Card, LeftOut, Picture};
 use crate::error::Result;
 
 const TEMPLATE: &str = include_str!("assets/gallery.html");
-const THEME: &str = include_str!("../../../crates/viewer/assets/css/theme.css");
 const STYLE: &str = include_str!("assets/gallery.css");
 
 /// Writes the page, whole or not at all.
@@ -85,10 +85,4 @@ fn left_out(items: &[LeftOut]) -> String {
     };
     let lines: String = items.iter().map(line).collect();
     format!("<div><h3>The plan leaves out</h3>\n<ul>\n{lines}</ul></div>\n")
-}
-
-/// Plain text as HTML, inside an element or a quoted attribute.
-fn escape(text: &str) -> String {
-    let escaped = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    escaped.replace('"', "&quot;")
 }

@@ -95,7 +95,7 @@ fn plan() -> Vec<Planned> {
     ]
 }
 
-fn record(name: &str, verdict: &str, interval: Value, p: Value) -> Value {
+fn record(name: &str, verdict: &str, interval: &Value, p: &Value) -> Value {
     json!({ "name": name, "verdict": verdict, "seconds": 2.5, "interval": interval, "p": p,
             "batches": 64, "contrasts": 3, "notes": [format!("a note on {name}")] })
 }
@@ -109,15 +109,15 @@ fn runs() -> String {
         .to_string()
     };
     let path =
-        |low: f64, high: f64| record("matrix/fog/path", "passed", json!([low, high]), json!(0.5));
-    let late = record("control/late/matrix/fog/path", "passed", json!([0.1, 0.2]), json!(1e-30));
-    let mut failed = record("matrix/fog/beams-1d", "failed", json!([0.012, 0.034]), json!(1e-9));
+        |low: f64, high: f64| record("matrix/fog/path", "passed", &json!([low, high]), &json!(0.5));
+    let late = record("control/late/matrix/fog/path", "passed", &json!([0.1, 0.2]), &json!(1e-30));
+    let mut failed = record("matrix/fog/beams-1d", "failed", &json!([0.012, 0.034]), &json!(1e-9));
     failed["table"] = json!(["method   NMSE", "beams  1.3e-2 < 2"]);
     failed["repeat"] = json!("cargo xtask validate --seed 1 --filter 'matrix/fog/beams-1d'");
     failed["files"] = json!(["left/wrong.svg", "left/gone.png"]);
     failed["notes"] = json!(["most significant: bin 12 (z = 9.1)"]);
     let kernel =
-        record("control/kernel/matrix/fog/beams-1d", "failed", json!([0.0, 0.01]), json!(0.2));
+        record("control/kernel/matrix/fog/beams-1d", "failed", &json!([0.0, 0.01]), &json!(0.2));
     let broken = json!({ "name": "glass/clock", "verdict": "broken", "seconds": 0.01,
                          "error": "the scene <b>cannot</b> be read" });
     [
@@ -127,12 +127,12 @@ fn runs() -> String {
             1_700_003_600,
             "bbbbbbbbbbbb-dirty",
             vec![
-                record("samplers/phase", "passed", Value::Null, json!(0.6)),
+                record("samplers/phase", "passed", &Value::Null, &json!(0.6)),
                 path(-0.003, 0.002),
                 late,
                 failed,
                 kernel,
-                record("old/experiment", "passed", Value::Null, Value::Null),
+                record("old/experiment", "passed", &Value::Null, &Value::Null),
             ],
         ),
         run(1_700_007_200, "cccccccccccc", vec![path(-0.002, 0.003)]),
