@@ -27,6 +27,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("tpb-transport", 2),
     ("tpb-viewer", 2),
     ("tpb-dashboard", 2),
+    ("tpb-video", 2),
     ("tpb-path", 3),
     ("tpb-beams", 3),
     ("tpb-light", 3),

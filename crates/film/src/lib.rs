@@ -26,12 +26,15 @@ mod testing;
 
 pub use arrays::{Arrays, Quantity};
 pub use arrival::{Arrival, TemporalProfile};
-pub use atomic::atomic_write;
+pub use atomic::{atomic_path, atomic_write};
 pub use error::FilmError;
 pub use film::{FilmOptions, OutputChannels, TransientFilm};
 pub use layout::{Layout, TimeAxis};
 pub use ledger::Ledger;
-pub use picture::{ArrivalColours, ArrivalTime, PictureOptions};
+pub use picture::{
+    ArrivalColours, ArrivalTime, Frames, PictureOptions, Tone, ToneMap, arrival_scale, srgb,
+    white_level,
+};
 pub use pulse::{Pulse, PulseReport};
 pub use quadrature::integrate;
 pub use strip::Strip;

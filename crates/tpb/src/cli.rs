@@ -8,6 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use tpb_film::Pulse;
 
 use crate::values;
+use crate::video::{ToneArgs, VideoArgs};
 use crate::viewer::{CompareArgs, ViewArgs};
 
 /// Renders light in flight: transient photon beams, a path tracer, a light tracer; and analytic curves.
@@ -31,6 +32,8 @@ pub(crate) enum Command {
     View(ViewArgs),
     /// Print the errors of results against a reference, and show them side by side
     Compare(Box<CompareArgs>),
+    /// Make a video of a result: APNG, GIF, MP4, WebM
+    Video(Box<VideoArgs>),
     /// Print or draw an analytic solution, at a point or over a range of an input
     Reference(ReferenceArgs),
     /// Print the JSON schema of scene files
@@ -90,8 +93,11 @@ pub(crate) struct RenderArgs {
     )]
     pub(crate) pulse: Pulse,
 
+    #[command(flatten)]
+    pub(crate) tone: ToneArgs,
+
     /// Write arrays and report only
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["tone", "exposure"])]
     pub(crate) no_pictures: bool,
 
     #[command(flatten)]

@@ -4,12 +4,15 @@
 //! names of ours, or that holds a report of ours. Everything is checked before the render starts;
 //! afterwards each file is tried on its own, so that one failure does not take the others along.
 
+use std::fmt::Display;
 use std::fs;
 use std::io::{self, Write};
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use tpb_film::{Arrays, FilmError, PictureOptions, Quantity, atomic_write};
 use tpb_render::Report;
+use tpb_video::{Format, VideoError, VideoOptions, write_video};
 
 use crate::failure::Failure;
 
@@ -102,7 +105,7 @@ impl ResultFolder {
             written.note("steady.png", arrays.write_steady_png(&at("steady.png"), options));
             if arrays.bins > 0 {
                 let animation = at("animation.png");
-                written.note("animation.png", arrays.write_animation(&animation, options));
+                written.note("animation.png", write_animation(arrays, &animation, options));
                 written.note("streak.png", arrays.write_streak(&at("streak.png"), options));
                 let frames = arrays.write_frames(&at(FRAMES), options);
                 written.note("frames/", frames.map(drop));
@@ -143,7 +146,7 @@ impl ResultFolder {
 }
 
 impl Written {
-    fn note(&mut self, name: &str, outcome: Result<(), FilmError>) {
+    fn note<E: Display>(&mut self, name: &str, outcome: Result<(), E>) {
         match outcome {
             Ok(()) => self.files.push(name.to_owned()),
             Err(error) => self.failures.push(format!("cannot write {error}")),
@@ -160,6 +163,17 @@ fn write_report(path: &Path, report: &Report) -> Result<(), FilmError> {
         serde_json::to_writer_pretty(&mut *file, report)?;
         file.write_all(b"\n")
     })
+}
+
+/// All frames as one animated PNG, which plays for ever in any browser.
+fn write_animation(
+    arrays: &Arrays,
+    path: &Path,
+    options: &PictureOptions,
+) -> Result<(), VideoError> {
+    let options = VideoOptions { pictures: *options, ..VideoOptions::default() };
+    write_video(arrays, path, Format::Apng, &options, &mut |_, _| ControlFlow::Continue(()))?;
+    Ok(())
 }
 
 /// Whether nothing of anyone else is in a folder.

@@ -7,6 +7,7 @@
 //! * [`prepare`]: what `render` and `plan` share — the scene, its plan, the method;
 //! * [`folder`]: the result folder, safe against accidents;
 //! * [`mod@reference`]: analytic solutions;
+//! * [`video`]: results as videos;
 //! * [`viewer`]: results as pages, and their error numbers;
 //! * [`watch`]: progress bar and ctrl-c;
 //! * [`failure`], [`mod@print`]: all that is printed goes through these.
@@ -26,6 +27,7 @@ mod render;
 mod schema;
 mod summary;
 mod values;
+mod video;
 mod viewer;
 mod watch;
 
@@ -43,6 +45,7 @@ fn main() -> ExitCode {
         Command::Reference(args) => reference::run(args),
         Command::View(args) => viewer::view(args),
         Command::Compare(args) => viewer::compare(args),
+        Command::Video(args) => video::run(args),
         Command::Schema => schema::run(),
     };
     match outcome {

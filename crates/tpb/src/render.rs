@@ -4,7 +4,7 @@ use std::num::NonZero;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use tpb_film::{Arrays, PictureOptions, PulseReport};
+use tpb_film::{Arrays, PulseReport};
 use tpb_render::{
     Budget, FilmSetup, MethodRecord, Outcome, RenderOptions, Report, RunSettings, RunSummary,
     SceneRecord, Stopwatch, with_threads,
@@ -47,7 +47,7 @@ fn options(args: &RenderArgs) -> RenderOptions {
         variance: args.variance,
         unwarp: args.unwarp,
         pulse: args.pulse,
-        pictures: (!args.no_pictures).then(PictureOptions::default),
+        pictures: (!args.no_pictures).then(|| args.tone.pictures()),
     }
 }
 

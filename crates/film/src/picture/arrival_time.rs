@@ -8,12 +8,13 @@
 //! precede, so that a lamp seen directly, which may be nearly all of the energy, does not take the
 //! whole scale. A bar below the picture shows the scale.
 
+use std::ops::Range;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use tpb_optics::opl::seconds_from_opl;
 
-use super::tone::{Exposure, srgb};
+use super::tone::{srgb, white_level};
 use super::{Image, PictureOptions};
 use crate::arrays::luminance;
 use crate::{Arrays, FilmError, Quantity};
@@ -38,6 +39,58 @@ pub struct ArrivalColours {
     pub late_opl: f64,
 }
 
+impl ArrivalColours {
+    /// The times that 1 % and 99 % of the lit pixels' brightness precede; `window` where nothing is
+    /// lit \[m\].
+    pub fn of(
+        times: &[Option<f64>],
+        brightness: impl Fn(usize) -> f64,
+        window: (f64, f64),
+    ) -> Self {
+        let mut weighted: Vec<(f64, f64)> = times
+            .iter()
+            .enumerate()
+            .filter_map(|(pixel, time)| time.map(|time| (time, brightness(pixel))))
+            .collect();
+        weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let total: f64 = weighted.iter().map(|w| w.1).sum();
+        let preceded_by = |part: f64| {
+            let mut sum = 0.0;
+            let found = weighted.iter().find(|w| {
+                sum += w.1;
+                sum >= part * total
+            });
+            found.or(weighted.last()).map(|w| w.0)
+        };
+        Self {
+            early_opl: preceded_by(0.01).unwrap_or(window.0),
+            late_opl: preceded_by(0.99).unwrap_or(window.1),
+        }
+    }
+
+    /// Where an OPL \[m\] stands on the scale: 0 at the early end, 1 at the late one.
+    pub fn position(&self, opl: f64) -> f64 {
+        let span = self.late_opl - self.early_opl;
+        if span > 0.0 { ((opl - self.early_opl) / span).clamp(0.0, 1.0) } else { 0.5 }
+    }
+
+    /// The linear colour of an OPL \[m\].
+    pub fn colour(&self, opl: f64) -> [f64; 3] {
+        scale_colour(self.position(opl))
+    }
+}
+
+/// The scale as a bar below a picture of this size, early to late: sRGB samples, three a pixel, of
+/// a black row and of the bar.
+pub fn arrival_scale(width: usize, height: usize) -> Vec<u8> {
+    let mut samples = vec![0; 3 * width];
+    let at = |x: usize| (x as f64 + 0.5) / width as f64;
+    for _ in 0..(height / 32).max(2) {
+        samples.extend((0..width).flat_map(|x| scale_colour(at(x)).map(srgb)));
+    }
+    samples
+}
+
 /// Linear sRGB of the scale at 0 (early) to 1 (late).
 fn scale_colour(at: f64) -> [f64; 3] {
     const LIGHTNESS: f64 = 0.75;
@@ -56,10 +109,11 @@ fn scale_colour(at: f64) -> [f64; 3] {
 }
 
 impl Arrays {
-    /// OPL of arrival at a pixel; `None` where nothing arrives within the window.
-    fn arrival(&self, pixel: usize, kind: ArrivalTime) -> Option<f64> {
+    /// OPL of arrival \[m\] at a pixel within these bins; `None` where nothing arrives.
+    pub fn arrival(&self, pixel: usize, bins: Range<usize>, kind: ArrivalTime) -> Option<f64> {
         let centre = |bin: usize| 0.5 * (self.opl_edges[bin] + self.opl_edges[bin + 1]);
         let cells = self.pixel(pixel).chunks_exact(self.channels).map(luminance).enumerate();
+        let cells = cells.skip(bins.start).take(bins.len());
         match kind {
             ArrivalTime::Mean => {
                 let (mut energy, mut moment) = (0.0, 0.0);
@@ -85,36 +139,26 @@ impl Arrays {
         path: &Path,
         options: &PictureOptions,
     ) -> Result<ArrivalColours, FilmError> {
-        self.need_bins()?;
-        if self.quantity != Quantity::BinEnergy {
-            return Err(FilmError::Unsuitable("continuous emission has no time of arrival"));
-        }
+        self.need_arrivals()?;
         let steady = |pixel: usize| self.steady_luminance(pixel);
         let pixels = 0..self.pixels();
-        let times: Vec<Option<f64>> =
-            pixels.clone().map(|pixel| self.arrival(pixel, options.arrival)).collect();
-        let exposure =
-            Exposure::new(pixels.map(steady), options.steady_white_percentile, options.exposure);
-        let brightness = |pixel: usize| exposure.display(steady(pixel));
-        let colours = self.colour_range(&times, brightness);
-        let span = colours.late_opl - colours.early_opl;
+        let times: Vec<Option<f64>> = pixels
+            .clone()
+            .map(|pixel| self.arrival(pixel, 0..self.bins, options.arrival))
+            .collect();
+        let white = white_level(pixels.map(steady), options.steady_white_percentile);
+        let map = options.tone_map(white);
+        let brightness = |pixel: usize| map.grey(steady(pixel));
+        let window = (self.opl_edges[0], self.opl_edges[self.bins]);
+        let colours = ArrivalColours::of(&times, brightness, window);
 
         let mut samples = Vec::with_capacity(times.len() * 3);
         for (pixel, time) in times.iter().enumerate() {
-            let colour = time.map_or([0.0; 3], |time| {
-                scale_colour(if span > 0.0 { (time - colours.early_opl) / span } else { 0.5 })
-            });
+            let colour = time.map_or([0.0; 3], |time| colours.colour(time));
             samples.extend(colour.map(|c| srgb(c * brightness(pixel))));
         }
-        let bar = (self.height / 32).max(2);
-        samples.resize(samples.len() + self.width * 3, 0);
-        for _ in 0..bar {
-            for x in 0..self.width {
-                let at = (x as f64 + 0.5) / self.width as f64;
-                samples.extend(scale_colour(at).map(srgb));
-            }
-        }
-        let height = self.height + 1 + bar;
+        samples.extend(arrival_scale(self.width, self.height));
+        let height = samples.len() / (3 * self.width);
         let image = Image { width: self.width, height, channels: 3, samples };
         let ArrivalColours { early_opl, late_opl } = colours;
         let (early_s, late_s) = (seconds_from_opl(early_opl), seconds_from_opl(late_opl));
@@ -123,32 +167,16 @@ impl Arrays {
         Ok(colours)
     }
 
-    /// The times that 1 % and 99 % of the lit pixels' brightness precede.
-    fn colour_range(
-        &self,
-        times: &[Option<f64>],
-        brightness: impl Fn(usize) -> f64,
-    ) -> ArrivalColours {
-        let mut weighted: Vec<(f64, f64)> = times
-            .iter()
-            .enumerate()
-            .filter_map(|(pixel, time)| time.map(|time| (time, brightness(pixel))))
-            .collect();
-        weighted.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let total: f64 = weighted.iter().map(|w| w.1).sum();
-        let preceded_by = |part: f64| {
-            let mut sum = 0.0;
-            let found = weighted.iter().find(|w| {
-                sum += w.1;
-                sum >= part * total
-            });
-            found.or(weighted.last()).map(|w| w.0)
-        };
-        let whole = (self.opl_edges[0], self.opl_edges[self.bins]);
-        ArrivalColours {
-            early_opl: preceded_by(0.01).unwrap_or(whole.0),
-            late_opl: preceded_by(0.99).unwrap_or(whole.1),
+    /// That there are times of arrival to show.
+    ///
+    /// # Errors
+    /// [`FilmError::Unsuitable`] without energies per bin.
+    pub fn need_arrivals(&self) -> Result<(), FilmError> {
+        self.need_bins()?;
+        if self.quantity == Quantity::BinEnergy {
+            return Ok(());
         }
+        Err(FilmError::Unsuitable("continuous emission has no time of arrival"))
     }
 }
 

@@ -3,61 +3,107 @@
 //! With more bins than frames wanted, each frame is the mean of as many consecutive bins as
 //! needed, so that a frame always shows energy per bin. All frames share one exposure.
 
+use std::ops::Range;
 use std::path::Path;
 
-use super::tone::Exposure;
+use tpb_optics::Spectrum;
+
+use super::tone::{ToneMap, white_level};
 use super::{Image, PictureOptions};
-use crate::arrays::luminance;
-use crate::{Arrays, FilmError, atomic_write};
+use crate::{Arrays, FilmError};
 
 /// Bins in groups, one per frame.
-pub(super) struct Frames<'a> {
+#[derive(Clone, Debug)]
+pub struct Frames<'a> {
     arrays: &'a Arrays,
+    bins: Range<usize>,
     per_frame: usize,
 }
 
 impl<'a> Frames<'a> {
-    pub(super) fn new(arrays: &'a Arrays, max_frames: usize) -> Self {
-        Self { arrays, per_frame: arrays.bins.div_ceil(max_frames.max(1)) }
+    /// As many frames of these bins as there are bins, or at most `max_frames`.
+    ///
+    /// # Errors
+    /// [`FilmError::Unsuitable`] without a time axis, or if the bins are none of the arrays'.
+    pub fn new(
+        arrays: &'a Arrays,
+        bins: Range<usize>,
+        max_frames: usize,
+    ) -> Result<Self, FilmError> {
+        arrays.need_bins()?;
+        if bins.is_empty() || bins.end > arrays.bins {
+            return Err(FilmError::Unsuitable("these frames are not within the time axis"));
+        }
+        let per_frame = bins.len().div_ceil(max_frames.max(1));
+        Ok(Self { arrays, bins, per_frame })
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.arrays.bins.div_ceil(self.per_frame)
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.bins.len().div_ceil(self.per_frame)
     }
 
-    /// The mean cell of a frame at a pixel, in `cell`.
-    pub(super) fn cell(&self, pixel: usize, frame: usize, cell: &mut [f32]) {
+    /// Bins of a frame; the last may have fewer.
+    pub fn per_frame(&self) -> usize {
+        self.per_frame
+    }
+
+    /// The bins of frame `frame`.
+    pub fn bins(&self, frame: usize) -> Range<usize> {
+        let first = self.bins.start + frame * self.per_frame;
+        first..(first + self.per_frame).min(self.bins.end)
+    }
+
+    /// The mean cell of a frame at a pixel, in `cell`, which has as many channels as the arrays.
+    pub fn cell(&self, pixel: usize, frame: usize, cell: &mut [f64]) {
         let channels = self.arrays.channels;
-        let first = frame * self.per_frame;
-        let bins = first..(first + self.per_frame).min(self.arrays.bins);
+        let bins = self.bins(frame);
         let cells = &self.arrays.pixel(pixel)[bins.start * channels..bins.end * channels];
         for (channel, mean) in cell.iter_mut().enumerate() {
             let sum: f32 = cells.iter().skip(channel).step_by(channels).sum();
-            *mean = sum / bins.len() as f32;
+            *mean = f64::from(sum / bins.len() as f32);
         }
     }
 
-    pub(super) fn exposure(&self, options: &PictureOptions) -> Exposure {
+    /// The luminances of one frame.
+    pub fn luminances(&self, frame: usize) -> impl Iterator<Item = f64> {
+        let mut cell = vec![0.0; self.arrays.channels];
+        (0..self.arrays.pixels()).map(move |pixel| {
+            self.cell(pixel, frame, &mut cell);
+            luminance(&cell)
+        })
+    }
+
+    /// Display white for all frames: the part `percentile` of lit cells is darker.
+    pub fn white(&self, percentile: f64) -> f64 {
         let pixels = 0..self.arrays.pixels();
         let luminances = pixels.flat_map(|pixel| {
             let mut cell = vec![0.0; self.arrays.channels];
-            (0..self.len()).map(move |frame| {
+            (0..self.count()).map(move |frame| {
                 self.cell(pixel, frame, &mut cell);
                 luminance(&cell)
             })
         });
-        Exposure::new(luminances, options.white_percentile, options.exposure)
+        white_level(luminances, percentile)
     }
 
-    fn image(&self, frame: usize, exposure: Exposure) -> Image {
+    fn image(&self, frame: usize, map: ToneMap) -> Image {
         let channels = self.arrays.picture_channels();
         let mut cell = vec![0.0; self.arrays.channels];
         let mut samples = Vec::with_capacity(self.arrays.pixels() * channels);
         for pixel in 0..self.arrays.pixels() {
             self.cell(pixel, frame, &mut cell);
-            samples.extend(cell[..channels].iter().map(|&v| exposure.encode(f64::from(v))));
+            map.encode(&cell[..channels], &mut samples);
         }
         Image { width: self.arrays.width, height: self.arrays.height, channels, samples }
+    }
+}
+
+/// Luminance of a cell with one or three channels.
+fn luminance(cell: &[f64]) -> f64 {
+    match *cell {
+        [r, g, b] => Spectrum([r, g, b]).luminance(),
+        _ => cell[0],
     }
 }
 
@@ -84,46 +130,22 @@ impl Arrays {
         folder: &Path,
         options: &PictureOptions,
     ) -> Result<usize, FilmError> {
-        self.need_bins()?;
+        let frames = Frames::new(self, 0..self.bins, options.max_frames)?;
         std::fs::create_dir_all(folder).map_err(|e| FilmError::io(folder, e))?;
-        let frames = Frames::new(self, options.max_frames);
-        let exposure = frames.exposure(options);
-        for frame in 0..frames.len() {
+        let map = options.tone_map(frames.white(options.white_percentile));
+        for frame in 0..frames.count() {
             let path = folder.join(frame_name(frame * frames.per_frame));
-            frames.image(frame, exposure).write(&path, &[])?;
+            frames.image(frame, map).write(&path, &[])?;
         }
         for entry in std::fs::read_dir(folder).map_err(|e| FilmError::io(folder, e))? {
             let entry = entry.map_err(|e| FilmError::io(folder, e))?;
             let name = entry.file_name();
             let Some(name) = name.to_str().filter(|name| is_frame_name(name)) else { continue };
-            let written = (0..frames.len()).any(|f| name == frame_name(f * frames.per_frame));
+            let written = (0..frames.count()).any(|f| name == frame_name(f * frames.per_frame));
             if !written {
                 std::fs::remove_file(entry.path()).map_err(|e| FilmError::io(&entry.path(), e))?;
             }
         }
-        Ok(frames.len())
-    }
-
-    /// Writes all frames as one animated PNG, which plays for ever in any browser.
-    ///
-    /// # Errors
-    /// [`FilmError::Io`]; [`FilmError::Unsuitable`] without a time axis.
-    pub fn write_animation(&self, path: &Path, options: &PictureOptions) -> Result<(), FilmError> {
-        self.need_bins()?;
-        let frames = Frames::new(self, options.max_frames);
-        let exposure = frames.exposure(options);
-        atomic_write(path, |file| {
-            let first = frames.image(0, exposure);
-            let mut encoder = first.encoder(file)?;
-            encoder.set_animated(frames.len() as u32, 0)?;
-            encoder.set_frame_delay(1, options.frames_per_second.max(1))?;
-            let mut writer = encoder.write_header()?;
-            writer.write_image_data(&first.samples)?;
-            for frame in 1..frames.len() {
-                writer.write_image_data(&frames.image(frame, exposure).samples)?;
-            }
-            writer.finish()?;
-            Ok(())
-        })
+        Ok(frames.count())
     }
 }

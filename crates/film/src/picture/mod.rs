@@ -1,7 +1,7 @@
-//! Pictures of the arrays, for people: frames, animation, time of arrival, streak, steady image.
+//! Pictures of the arrays, for people: frames, time of arrival, streak, steady image.
 //!
-//! * [`tone`]: exposure and the sRGB curve.
-//! * [`frames`]: one PNG per frame, and all of them as an APNG, which browsers play.
+//! * [`tone`]: exposure, curves, sRGB.
+//! * [`frames`]: one PNG per frame.
 //! * [`arrival_time`]: hue tells when light arrives, brightness how much.
 //! * [`steady`]: the steady image.
 //! * [`streak`]: one row of the image against time.
@@ -18,20 +18,25 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use tpb_optics::Spectrum;
 
-pub use arrival_time::{ArrivalColours, ArrivalTime};
+pub use arrival_time::{ArrivalColours, ArrivalTime, arrival_scale};
+pub use frames::Frames;
+pub use tone::{Tone, ToneMap, srgb, white_level};
 
 use crate::{Arrays, FilmError, atomic_write};
 
-/// How pictures are made.
+/// How pictures are made. Unknown members of a stored one are ignored, so that reports of other
+/// versions can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+#[serde(default)]
 pub struct PictureOptions {
     /// The part of lit cells of the cube that is darker than display white, in frames and streak.
     pub white_percentile: f64,
     /// The same for pixels of the steady image, where lamps seen directly take a larger part.
     pub steady_white_percentile: f64,
-    /// Brightness on top of that; 2 is one stop up.
-    pub exposure: f64,
+    /// Exposure on top of that \[stops\]: 1 doubles.
+    pub exposure_stops: f64,
+    /// The curve from radiance to display values.
+    pub tone: Tone,
     /// Bins are averaged in groups so that there are at most this many frames.
     pub max_frames: usize,
     /// Speed of the animation.
@@ -47,12 +52,20 @@ impl Default for PictureOptions {
         Self {
             white_percentile: 0.99,
             steady_white_percentile: 0.95,
-            exposure: 1.0,
+            exposure_stops: 0.0,
+            tone: Tone::Linear,
             max_frames: 300,
             frames_per_second: 20,
             streak_row: None,
             arrival: ArrivalTime::Mean,
         }
+    }
+}
+
+impl PictureOptions {
+    /// The tone mapping for a display white.
+    pub fn tone_map(&self, white: f64) -> ToneMap {
+        ToneMap::new(white, self.tone, self.exposure_stops)
     }
 }
 
@@ -69,19 +82,13 @@ impl Image {
         if self.channels == 3 { png::ColorType::Rgb } else { png::ColorType::Grayscale }
     }
 
-    /// An encoder for images of this size.
-    fn encoder<'w, W: io::Write>(&self, file: W) -> io::Result<png::Encoder<'w, W>> {
-        let side = |n: usize| u32::try_from(n).map_err(io::Error::other);
-        let mut encoder = png::Encoder::new(file, side(self.width)?, side(self.height)?);
-        encoder.set_color(self.color());
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        Ok(encoder)
-    }
-
     fn write(&self, path: &Path, texts: &[(&str, String)]) -> Result<(), FilmError> {
         atomic_write(path, |file: &mut BufWriter<_>| {
-            let mut encoder = self.encoder(file)?;
+            let side = |n: usize| u32::try_from(n).map_err(io::Error::other);
+            let mut encoder = png::Encoder::new(file, side(self.width)?, side(self.height)?);
+            encoder.set_color(self.color());
+            encoder.set_depth(png::BitDepth::Eight);
+            encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
             for (keyword, text) in texts {
                 encoder.add_text_chunk((*keyword).to_owned(), text.clone())?;
             }
@@ -94,8 +101,8 @@ impl Image {
 }
 
 impl Arrays {
-    /// Channels of a picture: colour or grey.
-    fn picture_channels(&self) -> usize {
+    /// Channels of a picture: three for colour, one for grey.
+    pub fn picture_channels(&self) -> usize {
         if self.channels == 3 { 3 } else { 1 }
     }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::tone::Exposure;
+use super::tone::white_level;
 use super::{Image, PictureOptions};
 use crate::{Arrays, FilmError};
 
@@ -14,9 +14,11 @@ impl Arrays {
     pub fn write_steady_png(&self, path: &Path, options: &PictureOptions) -> Result<(), FilmError> {
         let channels = self.picture_channels();
         let luminances = (0..self.pixels()).map(|pixel| self.steady_luminance(pixel));
-        let exposure = Exposure::new(luminances, options.steady_white_percentile, options.exposure);
-        let pixels = self.steady.chunks_exact(self.channels).flat_map(|pixel| &pixel[..channels]);
-        let samples = pixels.map(|&steady| exposure.encode(steady)).collect();
+        let map = options.tone_map(white_level(luminances, options.steady_white_percentile));
+        let mut samples = Vec::with_capacity(self.pixels() * channels);
+        for pixel in self.steady.chunks_exact(self.channels) {
+            map.encode(&pixel[..channels], &mut samples);
+        }
         Image { width: self.width, height: self.height, channels, samples }.write(path, &[])
     }
 }

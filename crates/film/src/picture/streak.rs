@@ -15,23 +15,22 @@ impl Arrays {
     /// # Errors
     /// [`FilmError::Io`]; [`FilmError::Unsuitable`] without a time axis or such a row.
     pub fn write_streak(&self, path: &Path, options: &PictureOptions) -> Result<(), FilmError> {
-        self.need_bins()?;
+        let frames = Frames::new(self, 0..self.bins, options.max_frames)?;
         let row = options.streak_row.unwrap_or(self.height / 2);
         if row >= self.height {
             return Err(FilmError::Unsuitable("the streak's row is not within the image"));
         }
-        let frames = Frames::new(self, options.max_frames);
-        let exposure = frames.exposure(options);
+        let map = options.tone_map(frames.white(options.white_percentile));
         let channels = self.picture_channels();
         let mut cell = vec![0.0; self.channels];
-        let mut samples = Vec::with_capacity(self.width * frames.len() * channels);
-        for frame in 0..frames.len() {
+        let mut samples = Vec::with_capacity(self.width * frames.count() * channels);
+        for frame in 0..frames.count() {
             for x in 0..self.width {
                 frames.cell(row * self.width + x, frame, &mut cell);
-                samples.extend(cell[..channels].iter().map(|&v| exposure.encode(f64::from(v))));
+                map.encode(&cell[..channels], &mut samples);
             }
         }
-        let image = Image { width: self.width, height: frames.len(), channels, samples };
+        let image = Image { width: self.width, height: frames.count(), channels, samples };
         image.write(path, &[("Title", format!("row {row} against time, downwards"))])
     }
 }

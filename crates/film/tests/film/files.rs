@@ -120,7 +120,6 @@ fn unwritable_paths_are_errors_and_leave_nothing() {
         let results = [
             cube.write_npz(&path),
             cube.write_steady_exr(&path),
-            cube.write_animation(&path, &options),
             cube.write_streak(&path, &options),
             cube.write_arrival_time(&path, &options).map(|_| ()),
         ];

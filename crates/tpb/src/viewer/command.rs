@@ -8,7 +8,7 @@ use tpb_render::Report;
 use tpb_scene::load::load_scene;
 
 /// The command that makes a result again: same scene, film, depths, seed and number of passes.
-pub(super) fn command(report: &Report) -> String {
+pub(crate) fn command(report: &Report) -> String {
     let mut parts = vec![
         "tpb render".to_owned(),
         quoted(&report.scene.file),
@@ -107,7 +107,7 @@ fn quoted(word: &str) -> String {
 }
 
 /// A pulse as `--pulse` takes it.
-pub(super) fn pulse(pulse: Pulse) -> String {
+pub(crate) fn pulse(pulse: Pulse) -> String {
     // Full width at half maximum of a Gaussian: 2 √(2 ln 2) σ.
     const FWHM: f64 = 2.354_820_045_030_949_3;
     match pulse {

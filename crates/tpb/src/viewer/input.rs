@@ -13,16 +13,17 @@ use super::command::{command, pulse};
 
 /// A result to show.
 #[derive(Debug)]
-pub(super) struct Input {
+pub(crate) struct Input {
     /// What people read.
     pub(super) label: String,
-    pub(super) loaded: Loaded,
-    report: Option<Report>,
+    pub(crate) loaded: Loaded,
+    /// Its report, if it has one of its own.
+    pub(crate) report: Option<Report>,
 }
 
 impl Input {
     /// Reads a result; a cube of another program has no report.
-    pub(super) fn read(path: &Path, label: Option<&String>) -> Result<Self, Failure> {
+    pub(crate) fn read(path: &Path, label: Option<&String>) -> Result<Self, Failure> {
         let loaded = load(path)?;
         let report = folder::read_report(&folder::report_of(path)).ok();
         // The report beside an archive of ours is its own only if it tells of the same arrays.
@@ -60,7 +61,7 @@ impl Input {
 }
 
 /// The name of a file or folder without what precedes it; an archive of ours is named by its folder.
-pub(super) fn name(path: &Path) -> String {
+pub(crate) fn name(path: &Path) -> String {
     let of = |path: &Path| path.file_stem().map(|name| name.to_string_lossy().into_owned());
     let in_folder = path.file_name().is_some_and(|name| name == "transient.npz");
     let folder = path.parent().filter(|_| in_folder).and_then(of);

@@ -12,7 +12,9 @@ use std::path::{Path, PathBuf};
 use tpb_viewer::{Comparison, PageReport, ViewerError, write_comparison};
 
 pub(crate) use args::{CompareArgs, ViewArgs};
+pub(crate) use command::{command, pulse as pulse_name};
 pub(crate) use compare::run as compare;
+pub(crate) use input::{Input, name};
 pub(crate) use view::run as view;
 
 use crate::failure::Failure;

@@ -7,6 +7,7 @@ mod interrupt;
 mod reference;
 mod renders;
 mod snapshots;
+mod video;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

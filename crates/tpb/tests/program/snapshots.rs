@@ -6,7 +6,9 @@ use crate::{FEW, SMALL, assert_done, program, root, stdout, tpb};
 
 #[test]
 fn help() {
-    for subcommand in ["", "render", "plan", "info", "view", "compare", "reference", "schema"] {
+    let subcommands =
+        ["", "render", "plan", "info", "view", "compare", "video", "reference", "schema"];
+    for subcommand in subcommands {
         let arguments: Vec<&str> = subcommand.split_whitespace().chain(["--help"]).collect();
         let output = tpb(&root(), arguments);
         assert_done(&output);
