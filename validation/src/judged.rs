@@ -4,6 +4,8 @@
 //! cells hold nearly all of the power, and the rest of the image would not count. Nor are those in
 //! which a point stands: the fog around it is infinitely bright.
 
+use std::num::NonZeroU32;
+
 use tpb_light::LightOptions;
 use tpb_optics::{Coefficients, Spectrum};
 use tpb_path::PathOptions;
@@ -14,8 +16,10 @@ use crate::cube::dilate;
 use crate::error::Result;
 use crate::measure::{Estimator, layout, render};
 
-/// Camera paths per pixel that look for emitters.
-const MASK_SAMPLES: u32 = 4096;
+/// Camera paths that look for emitters: so many per pixel at most, and as many per area of a larger
+/// film as of one of 64x64 pixels.
+const MASK_SAMPLES: usize = 4096;
+const MASK_PIXELS: usize = 64 * 64;
 
 /// Rays along each side of a pixel that look for mirrors and glass.
 const GRID: usize = 4;
@@ -59,7 +63,10 @@ impl Referee {
 fn sees_no_emitter<const C: usize>(scene: &Scene) -> Result<Vec<bool>> {
     let scene = without_scattering(scene);
     let plan = Plan::new(&scene, &scene.integrator);
-    let options = PathOptions { samples_per_pass: MASK_SAMPLES.try_into().ok() };
+    let pixels = scene.film.width * scene.film.height;
+    let samples = MASK_SAMPLES.min(MASK_SAMPLES * MASK_PIXELS / pixels).max(16);
+    let options =
+        PathOptions { samples_per_pass: u32::try_from(samples).ok().and_then(NonZeroU32::new) };
     let method = Estimator::Path(options).prepare::<C>(&scene, &plan, scene.integrator)?;
     let mut layout = layout(&scene.film, 0.0)?;
     layout.time = None;

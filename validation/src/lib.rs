@@ -12,6 +12,7 @@
 //!   render that both are compared with; [`judged`]: by whom, and in which pixels.
 //! * [`run_time`]: how the error of a method falls with the time it is given.
 //! * [`gallery`]: scenes that show what the renderer can do, and the page of them.
+//! * [`reproduce`]: the source's figures made again, with errors.
 //! * [`taps`]: photons at given optical path lengths, for what no camera sees.
 //! * [`suite`]: running many; [`report`], [`pages`]: what is printed and what is kept of it;
 //!   [`history`]: a run as a line for the dashboard.
@@ -36,6 +37,7 @@ pub mod pages;
 pub mod reference_cube;
 pub mod registry;
 pub mod report;
+pub mod reproduce;
 pub mod run_time;
 pub mod sabotage;
 pub mod scenes;

@@ -7,6 +7,7 @@ mod error_time;
 mod gallery;
 mod gate;
 mod meshes;
+mod reproduce;
 mod schema;
 mod stress;
 mod tables;
@@ -50,6 +51,8 @@ enum Task {
     Dashboard(dashboard::DashboardArgs),
     /// Says which of the tools that tests, pages and videos need are there, and how to get the rest.
     Doctor,
+    /// Makes the paper's scenes and figures again, with errors, delays and caustics: pages, table.
+    Reproduce(reproduce::ReproduceArgs),
     /// Renders the long reference cube of an equal-time comparison.
     ReferenceRender(validate::ReferenceRenderArgs),
     /// Checks scene.schema.json against the code, or writes it.
@@ -73,6 +76,7 @@ fn main() -> ExitCode {
         Task::Meshes => meshes::run(),
         Task::Dashboard(args) => dashboard::run(&args),
         Task::Doctor => doctor::run(),
+        Task::Reproduce(args) => reproduce::run(&args),
         Task::ReferenceRender(args) => validate::reference_render(&args),
         Task::Schema { write } => schema::run(write),
         Task::Tidy => tidy::run(),

@@ -87,6 +87,12 @@ impl Gram {
         Self { n: residuals.len(), products }
     }
 
+    /// From inner products, row by row: `n` times `n`, symmetric.
+    pub(crate) fn from_products(n: usize, products: Vec<f64>) -> Self {
+        debug_assert_eq!(products.len(), n * n);
+        Self { n, products }
+    }
+
     /// Adds the products of another set of cells of the same replicates.
     pub fn add(&mut self, other: &Self) {
         debug_assert_eq!(self.n, other.n);

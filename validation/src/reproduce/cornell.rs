@@ -1,0 +1,121 @@
+//! Figure 2: *Cornell blocks*, path tracing and photon beams at equal time.
+//!
+//! Two comparisons. At picture quality (the scene's own film) the reference is rendered here, in
+//! batches, and its measured noise is subtracted; numbers are as precise as its time allows, and say
+//! so. At 64x64 pixels and 200 bins, the validation's scene of the same geometry is compared with
+//! its shipped reference, which is far less noisy.
+
+mod pages;
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use tpb_film::Arrays;
+
+use super::compare::Comparison;
+use super::contest::{Contest, Contested, Judge};
+use super::race::first_with_variance;
+use super::{Options, folder, load, write_json};
+use crate::error::Result;
+use crate::suite::Circumstances;
+
+/// Its name, in files and pages.
+pub const NAME: &str = "cornell-blocks";
+/// Time of a run of the precise comparison, as a part of the others'.
+const PRECISE: f64 = 0.2;
+/// Windows of time lie between these \[m\]; the first light is seen at 3.9 m.
+const WINDOWS: [f64; 9] = [3.85, 4.4, 4.9, 5.4, 6.0, 7.0, 8.5, 10.5, 14.0];
+
+/// What is kept of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CornellResult {
+    /// Commit, machine, flags, seed.
+    pub circumstances: Circumstances,
+    /// The command that repeats it.
+    pub command: String,
+    /// At picture quality.
+    pub picture: Comparison,
+    /// Against the shipped reference; `None` in trials.
+    pub precise: Option<Comparison>,
+}
+
+/// Renders, compares, and writes `cornell-blocks/` below the output folder. Each step is told.
+///
+/// # Errors
+/// If a scene or a kept file is broken, the folder cannot be written, or the reference is too noisy
+/// to compare with.
+pub fn run(options: &Options, say: &mut dyn FnMut(&str)) -> Result<CornellResult> {
+    let out = options.out.join(NAME);
+    folder(&out)?;
+    let precise = if options.is_trial() { None } else { Some(precise(options, &out, say)?) };
+    say(&format!("{NAME}: path and beams at equal time, at picture quality"));
+    let loaded = options.load(NAME, &[])?;
+    let absorbing = options.load(NAME, &["fog.albedo=0"])?;
+    let reference = options.reference(&out);
+    let contest = Contest {
+        loaded: &loaded,
+        absorbing: &absorbing,
+        time: options.time,
+        replicates: options.replicates,
+        seed: options.circumstances.seed,
+        commit: &options.circumstances.commit,
+        judge: Judge::Rendered { path: reference.clone(), time: options.reference_time },
+        windows: &WINDOWS,
+        folder: out.join("replicates"),
+    };
+    let contested = contest.run(say)?;
+    let result = CornellResult {
+        circumstances: options.circumstances.clone(),
+        command: options.command.clone(),
+        picture: contested.comparison.clone(),
+        precise,
+    };
+    write_json(&out.join("result.json"), &result)?;
+    say("  pictures and pages");
+    pages::write(&out, &result, &Shown { reference: &reference, contested: &contested })?;
+    contest.clear()?;
+    say(&format!("  wrote {}", out.join("index.html").display()));
+    Ok(result)
+}
+
+/// What pages are made of, beside the numbers.
+struct Shown<'a> {
+    reference: &'a Path,
+    contested: &'a Contested,
+}
+
+impl Shown<'_> {
+    /// Path, beams, reference, each with its variance.
+    fn arrays(&self) -> Result<[Arrays; 3]> {
+        let reference = Arrays::read_npz(self.reference)?;
+        let path = first_with_variance(&self.contested.runs[0], &reference)?;
+        let beams = first_with_variance(&self.contested.runs[1], &reference)?;
+        Ok([path, beams, reference])
+    }
+}
+
+/// The same comparison at 64x64 pixels and 200 bins, against the reference that ships.
+fn precise(options: &Options, out: &Path, say: &mut dyn FnMut(&str)) -> Result<Comparison> {
+    say(&format!("{NAME}: path and beams at equal time, at 64x64x200"));
+    let data = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let scene = data.join("scenes").join(format!("{NAME}.json"));
+    let (loaded, absorbing) = (load(&scene, &[])?, load(&scene, &["fog.albedo=0".to_owned()])?);
+    let contest = Contest {
+        loaded: &loaded,
+        absorbing: &absorbing,
+        time: options.time.mul_f64(PRECISE),
+        replicates: options.replicates,
+        seed: options.circumstances.seed,
+        commit: &options.circumstances.commit,
+        judge: Judge::Shipped(data.join("references").join(format!("{NAME}.npz"))),
+        windows: &WINDOWS,
+        folder: out.join("replicates-precise"),
+    };
+    let comparison = contest.run(say)?.comparison;
+    write_json(&out.join("precise.json"), &comparison)?;
+    contest.clear()?;
+    Ok(comparison)
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -1,0 +1,118 @@
+//! A tiny film from the first render to the last file.
+
+use std::fs;
+use std::time::Duration;
+
+use super::*;
+use crate::reproduce::summary::Summary;
+
+/// A scene of a few pixels and bins in a folder of its own.
+pub(crate) fn trial(name: &str) -> Options {
+    let out = std::env::temp_dir().join(format!("tpb-reproduce-{name}-{}", std::process::id()));
+    let scenes = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let circumstances = Circumstances {
+        commit: "test".into(),
+        machine: "a machine".into(),
+        flags: "--trial".into(),
+        seed: 3,
+    };
+    Options {
+        time: Duration::from_millis(20),
+        reference_time: Duration::from_millis(100),
+        replicates: 3,
+        pixels: Some(12),
+        bins: Some(20),
+        scenes,
+        out,
+        circumstances,
+        command: "cargo xtask reproduce cornell-blocks".into(),
+    }
+}
+
+#[test]
+fn all_files_are_made_and_agree_with_each_other() {
+    let options = trial("cornell");
+    let _ = fs::remove_dir_all(&options.out);
+    let mut told = Vec::new();
+    let result = run(&options, &mut |line| told.push(line.to_owned())).unwrap();
+    let out = options.out.join(NAME);
+    for file in ["sequence.png", "steady.png", "viewer.html", "variance-beams.png", "bias-path.png"]
+    {
+        assert!(fs::metadata(out.join(file)).unwrap().len() > 60, "{file}");
+    }
+    assert!(!out.join("replicates").exists(), "replicates are removed at the end");
+
+    // Numbers: parts add up to the whole, and windows, kinds and bins share the signal.
+    let c = &result.picture;
+    for split in c.whole().methods.iter().map(|m| &m.judged) {
+        let sum = split.variance.value + split.squared_bias.value;
+        assert!((sum / split.nmse.value - 1.0).abs() < 1e-9);
+        assert!(split.nmse.value > 0.0);
+    }
+    for parts in [&c.frames, &c.kinds] {
+        let shares: f64 = parts.iter().map(|part| part.share).sum();
+        assert!((shares - 1.0).abs() < 1e-9, "{shares}");
+        let errors = parts.iter().filter_map(|p| Some(p.share * p.splits[0].as_ref()?.nmse.value));
+        assert!((errors.sum::<f64>() / c.whole().methods[0].judged.nmse.value - 1.0).abs() < 0.05);
+    }
+    assert!(c.pixels[0] < c.pixels[1] && c.shape == [12, 12, 20]);
+
+    let page = fs::read_to_string(out.join("index.html")).unwrap();
+    for part in
+        ["photon beams, bin", "Provenance", "cargo xtask reproduce", "commit", "viewer.html"]
+    {
+        assert!(page.contains(part), "{part}");
+    }
+    let kept: CornellResult =
+        serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
+    assert_eq!(kept, result);
+    let summary = Summary::read(&options.out);
+    summary.write(&options.out, &options.circumstances, &options.command).unwrap();
+    assert_eq!(summary.lines().len(), 2);
+    assert!(fs::read_to_string(options.out.join("table.md")).unwrap().contains("12x12x20"));
+
+    // A second run uses the reference that is there.
+    let reference = || fs::metadata(out.join("reference-12-20.npz")).unwrap().modified().unwrap();
+    let before = reference();
+    told.clear();
+    run(&options, &mut |line| told.push(line.to_owned())).unwrap();
+    assert_eq!(reference(), before);
+    assert!(told.iter().any(|line| line.contains("are there already")), "{told:?}");
+    fs::remove_dir_all(&options.out).unwrap();
+}
+
+#[test]
+fn an_interrupted_race_goes_on_and_a_folder_that_cannot_be_written_is_told_first() {
+    let options = trial("race");
+    let _ = fs::remove_dir_all(&options.out);
+    let loaded = options.load(NAME, &[]).unwrap();
+    let methods = [crate::measure::Estimator::of_name("path").unwrap()];
+    let race = |replicates, seed| super::super::race::Race {
+        loaded: &loaded,
+        methods: &methods,
+        times: vec![options.time],
+        replicates,
+        seed,
+        commit: "test",
+        folder: options.out.join("kept"),
+    };
+    let first = race(2, 5).run(&mut |_| ()).unwrap();
+    let mut told = Vec::new();
+    let more = race(3, 5).run(&mut |line| told.push(line.to_owned())).unwrap();
+    assert_eq!(more[0][..2], first[0][..]);
+    let kept = told.iter().filter(|line| line.contains("kept from an earlier run")).count();
+    assert_eq!((kept, told.len()), (2, 3));
+    // Another seed is another race.
+    told.clear();
+    race(2, 6).run(&mut |line| told.push(line.to_owned())).unwrap();
+    assert!(told.iter().all(|line| line.contains("done")), "{told:?}");
+    fs::remove_dir_all(&options.out).unwrap();
+
+    let file = std::env::temp_dir().join(format!("tpb-reproduce-file-{}", std::process::id()));
+    fs::write(&file, "in the way").unwrap();
+    let blocked = Options { out: file.clone(), ..options };
+    let mut told = 0;
+    let error = run(&blocked, &mut |_| told += 1).unwrap_err();
+    assert!(error.to_string().contains("cannot access") && told == 0, "{error}");
+    fs::remove_file(&file).unwrap();
+}

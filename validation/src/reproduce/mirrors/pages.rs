@@ -1,0 +1,272 @@
+//! The page of *Mirrors*: both sequences, what geometry says of them, delay, caustics, and viewers.
+
+use std::path::Path;
+
+use tpb_film::{Arrays, Pulse};
+use tpb_optics::opl::seconds_from_opl;
+use tpb_viewer::{Method, PixelErrors, write_comparison};
+
+use super::super::colour::{frame_luminances, white};
+use super::super::page::Page;
+use super::super::picture::Picture;
+use super::super::{Options, report};
+use super::caustics::{Caustics, MARGIN, Verdict};
+use super::room::Event;
+use super::{MirrorsResult, TWIN};
+use crate::error::{Result, ValidationError};
+
+/// Between pictures of a grid.
+const GAP: usize = 4;
+const PAPER: [u8; 3] = [255; 3];
+/// Frames are shown so long after their event \[bins\]: a front is a bin or two wide.
+const AFTER: usize = 1;
+
+/// Writes both sequences, the viewer's page, and `index.html`; the delta sequence is used up.
+pub(super) fn write(out: &Path, result: &MirrorsResult, mut arrays: Arrays) -> Result<()> {
+    let mut page = Page::new("Mirrors: wavefronts reflected, and refracted late");
+    page.text(&format!(
+        "A fog-filled room with a point lamp, a mirror for its left wall, a tilted mirror on the \
+         right, and a ball of glass. One render by photon beams ({:.0} s, {:.0} CPU s, {} passes) \
+         gives both rows: a pulse without duration, and a lamp that is switched on and stays on.",
+        result.sequence.wall_seconds, result.sequence.cpu_seconds, result.sequence.passes
+    ));
+    let events = shown(&result.events, arrays.bins);
+    let delta = frames(&arrays, &events);
+    viewer(out, result, &arrays)?;
+    let pulse = arrays.apply_pulse(Pulse::Continuous);
+    pulse.map_err(|error| ValidationError::unusable("continuous emission", error))?;
+    let continuous = frames(&arrays, &events);
+    let edges = arrays.opl_edges.clone();
+    drop(arrays);
+    sequences(&mut page, out, &edges, &events, delta, continuous)?;
+    page.link("viewer.html", "All frames, pixel by pixel: the viewer");
+    timeline(&mut page, &result.events, &edges);
+    delays(&mut page, result);
+    caustics(&mut page, &result.twin, &result.point);
+    page.link("caustics.html", "The twin's renders by all three methods, in the comparison viewer");
+    page.heading("Path tracing and photon beams at equal time, on the twin");
+    page.text(
+        "The caustics of a tiny lamp, seen and unseen, are what path tracing finds only by chance. \
+         Its long render is the reference here: noisy, and said to be.",
+    );
+    report::numbers(&mut page, &result.equal_time);
+    report::curves(&mut page, out, "Mirrors, area lamp", &result.equal_time, "")?;
+    let film = report::film(&result.equal_time);
+    report::provenance(&mut page, &result.circumstances, &result.command, &film);
+    page.write(&out.join("index.html"))
+}
+
+/// Events in frames of their own: of those that share one, the first.
+fn shown(events: &[Event], bins: usize) -> Vec<(usize, String)> {
+    let mut list: Vec<(usize, String)> = Vec::new();
+    for event in events {
+        let bin = (event.bin + AFTER).min(bins.saturating_sub(1));
+        match list.last_mut() {
+            Some((last, label)) if *last == bin => {
+                *label = format!("{label}; {}", event.label);
+            }
+            _ => list.push((bin, event.label.clone())),
+        }
+    }
+    list
+}
+
+fn frames(arrays: &Arrays, events: &[(usize, String)]) -> Vec<Picture> {
+    let white = white(events.iter().flat_map(|&(bin, _)| frame_luminances(arrays, bin)));
+    events.iter().map(|&(bin, _)| Picture::frame(arrays, bin, white)).collect()
+}
+
+fn sequences(
+    page: &mut Page,
+    out: &Path,
+    edges: &[f64],
+    events: &[(usize, String)],
+    delta: Vec<Picture>,
+    continuous: Vec<Picture>,
+) -> Result<()> {
+    let rows = [delta.clone(), continuous.clone()];
+    Picture::grid(&rows, GAP, PAPER).write(&out.join("sequence.png"))?;
+    Picture::small_grid(&rows, GAP, PAPER).write(&out.join("small.png"))?;
+    let columns: Vec<String> = events
+        .iter()
+        .map(|&(bin, _)| {
+            let opl = edges[bin];
+            format!("bin {bin}: {opl:.2} m, {:.1} ns", 1e9 * seconds_from_opl(opl))
+        })
+        .collect();
+    let row = |name: &str, pictures: Vec<Picture>| {
+        let named = pictures.into_iter().zip(columns.iter().zip(events));
+        let with_alt = named
+            .map(|(picture, (column, (_, label)))| (picture, format!("{name}, {column}: {label}")));
+        (name.to_owned(), with_alt.collect::<Vec<_>>())
+    };
+    page.heading("The sequence (the source's figure 3)");
+    page.pictures(
+        "Above: a delta pulse, energy of one bin. Below: continuous emission from time 0 on, radiance \
+         at the bin's end. Each row has one exposure: display white is the 99th percentile of its lit \
+         cells.",
+        &columns,
+        &[row("delta pulse", delta), row("continuous emission", continuous)],
+    )?;
+    let seen = |(bin, label): &(usize, String)| format!("Bin {bin}: {label}.");
+    page.list(&events.iter().map(seen).collect::<Vec<_>>());
+    Ok(())
+}
+
+fn timeline(page: &mut Page, events: &[Event], edges: &[f64]) {
+    page.heading("When what is seen, by geometry");
+    let row = |event: &Event| {
+        let peak = event.peak.map_or("—".to_owned(), |peak| {
+            let late = peak as f64 - event.bin as f64;
+            format!("bin {peak} ({late:+.0})")
+        });
+        vec![
+            event.label.clone(),
+            format!("{:.3} m", event.opl),
+            format!("{}", event.bin),
+            format!("{:.0}, {:.0}", event.pixel[0], event.pixel[1]),
+            peak,
+        ]
+    };
+    let width = edges.get(1).zip(edges.first()).map_or(0.0, |(b, a)| b - a);
+    page.table(
+        &format!(
+            "OPL from the lamp to the place and on to the eye, in bins of {width:.3} m; where one \
+             expects it to be the brightest light there, the brightest bin of the pixels around it"
+        ),
+        &["event", "OPL", "bin", "pixel x, y", "brightest bin"],
+        &events.iter().map(row).collect::<Vec<_>>(),
+    );
+}
+
+fn delays(page: &mut Page, result: &MirrorsResult) {
+    page.heading("Glass slows light: the delay behind the ball");
+    page.text(
+        "A thin laser from the lamp's place through the middle of the ball onto the floor: the mean \
+         arrival with glass, less that with a ball of index 1, against (\u{3b7} \u{2212} 1)\u{b7}2r.",
+    );
+    let rows: Vec<Vec<String>> = result
+        .delays
+        .iter()
+        .map(|d| {
+            vec![
+                d.method.clone(),
+                format!("{:.5} m", d.exact),
+                format!("{:.5} \u{b1} {:.5} m", d.measured, d.half),
+                format!("{:+.5} m", d.measured - d.exact),
+                format!("{:.5} m", d.resolution),
+                format!("{:.5} / {:.5} m", d.arrival, d.exact_arrival),
+                if d.agrees() { "agrees".to_owned() } else { "DIFFERS".to_owned() },
+            ]
+        })
+        .collect();
+    page.table(
+        "Delay with its 99 % interval (noise); the bins' width adds its own uncertainty",
+        &[
+            "method",
+            "exact delay",
+            "measured",
+            "difference",
+            "bins' part",
+            "arrival, exact",
+            "verdict",
+        ],
+        &rows,
+    );
+}
+
+fn caustics(page: &mut Page, twin: &Caustics, point: &Caustics) {
+    page.heading("Caustics: do the methods agree?");
+    page.text(&format!(
+        "The twin's lamp has a radius of 2 cm, so that path tracing finds its caustics too. Means over \
+         regions with \u{b1} one standard error, and 95 % intervals of relative differences; methods \
+         agree where the interval lies within \u{b1}{:.0} %.",
+        100.0 * MARGIN
+    ));
+    for (caption, found) in [
+        ("The twin with an area lamp", twin),
+        ("The point lamp: path tracing misses its caustics, and is expected to differ", point),
+    ] {
+        page.table(
+            &caption_of(caption, found),
+            &heads(found),
+            &found.regions.iter().map(row).collect::<Vec<_>>(),
+        );
+    }
+}
+
+fn caption_of(caption: &str, found: &Caustics) -> String {
+    let spent = found.methods.iter().zip(&found.cpu_seconds).zip(&found.passes);
+    let spent: Vec<String> = spent
+        .map(|((method, seconds), passes)| format!("{method} {seconds:.0} CPU s, {passes} passes"))
+        .collect();
+    format!("{caption} ({}; {} batches each)", spent.join("; "), found.batches)
+}
+
+fn heads(found: &Caustics) -> Vec<&str> {
+    let mut heads = vec!["region", "pixels", "bins"];
+    heads.extend(found.methods.iter().map(String::as_str));
+    heads.extend(["light \u{2212} path", "beams \u{2212} path", "beams \u{2212} light"]);
+    heads
+}
+
+fn row(region: &super::caustics::RegionResult) -> Vec<String> {
+    let mut row = vec![
+        region.label.clone(),
+        region.pixels.to_string(),
+        format!("{} to {}", region.bins[0], region.bins[1]),
+    ];
+    let level =
+        |l: &super::caustics::Level| format!("{:.3e} \u{b1} {:.1e}", l.mean, l.standard_error);
+    row.extend(region.levels.iter().map(level));
+    row.extend(region.differences.iter().map(|d| {
+        let word = match d.verdict {
+            Verdict::Agree => "agree",
+            Verdict::Differ => "DIFFER",
+            Verdict::Open => "open",
+        };
+        d.interval.map_or("—".to_owned(), |[low, high]| {
+            format!("[{:+.1} %, {:+.1} %] {word}", 100.0 * low, 100.0 * high)
+        })
+    }));
+    row
+}
+
+fn viewer(out: &Path, result: &MirrorsResult, arrays: &Arrays) -> Result<()> {
+    let mut method = Method::new("beams", "photon beams", arrays);
+    method.provenance = report::provenance_of(&result.circumstances);
+    method.command = Some(result.command.clone());
+    let mut page = tpb_viewer::Comparison::new("Mirrors", vec![method]);
+    page.caption = "A pulse in a fog-filled room with mirrors and a glass ball.".into();
+    page.notes = result.events.iter().map(|e| format!("Bin {}: {}.", e.bin, e.label)).collect();
+    let written = write_comparison(&out.join("viewer.html"), &page);
+    written.map_err(|error| ValidationError::unusable("viewer page", error))?;
+    Ok(())
+}
+
+/// The page that shows the twin by all methods.
+pub(super) fn caustics_viewer(
+    out: &Path,
+    options: &Options,
+    found: &Caustics,
+    means: &[Arrays],
+) -> Result<()> {
+    let methods = found.methods.iter().zip(&found.cpu_seconds).zip(means);
+    let methods = methods
+        .map(|((name, seconds), arrays)| {
+            let mut method = Method::new(name, format!("{name}, {seconds:.0} CPU s"), arrays);
+            if name == "path" {
+                method.pixel_errors = PixelErrors::Independent;
+            }
+            method.provenance = report::provenance_of(&options.circumstances);
+            method.command = Some(options.command.clone());
+            method
+        })
+        .collect();
+    let mut page = tpb_viewer::Comparison::new("Mirrors, with a tiny area lamp", methods);
+    page.caption = format!("{TWIN}: path tracing, light tracing, photon beams; no reference.");
+    page.notes = vec!["The light tracer does not see what stands in mirrors and glass.".into()];
+    let written = write_comparison(&out.join("caustics.html"), &page);
+    written.map_err(|error| ValidationError::unusable("viewer page", error))?;
+    Ok(())
+}

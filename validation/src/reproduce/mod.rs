@@ -1,0 +1,142 @@
+//! The source's evidence made again: its two scenes, its figures, and what it lacks.
+//!
+//! * [`cornell`]: figure 2. Path tracing and photon beams at equal time, with a reference, error
+//!   curves, maps, and numbers with intervals.
+//! * [`mirrors`]: figure 3. Delta and continuous emission from one render, the delay behind the glass
+//!   ball against its exact optical path length, and caustics by three methods.
+//!
+//! Everything that takes long is kept as it comes: references for good, replicates until what they
+//! tell is written. An interrupted run goes on where it was.
+//!
+//! | module | subject |
+//! | --- | --- |
+//! | [`reference`], [`truth`] | the long render and its own noise |
+//! | [`race`], [`halves`] | renders at equal time, and how they are kept |
+//! | [`contest`], [`judge`], [`compare`], [`factor`] | errors, their parts, their ratios |
+//! | [`maps`], [`charts`], [`picture`], [`colour`], [`page`] | what is looked at |
+//! | [`summary`] | the pages over all scenes, and the table of who wins where |
+
+pub mod charts;
+pub mod colour;
+pub mod compare;
+pub mod contest;
+pub mod cornell;
+pub mod factor;
+pub mod halves;
+pub mod judge;
+pub mod maps;
+pub mod mirrors;
+pub mod page;
+pub mod picture;
+pub mod race;
+pub mod reference;
+mod report;
+pub mod summary;
+mod tables;
+#[cfg(test)]
+pub(crate) mod testing;
+pub mod truth;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use serde::Serialize;
+use tpb_film::atomic_write;
+use tpb_scene::load::{LoadedScene, Override, load_scene};
+
+use crate::error::{Result, ValidationError};
+use crate::suite::Circumstances;
+
+/// What a reproduction is told.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Wall time of one render of an equal-time comparison; everything else goes with it.
+    pub time: Duration,
+    /// Wall time of a reference.
+    pub reference_time: Duration,
+    /// Replicates of each method, at least 3.
+    pub replicates: u64,
+    /// Pixels along an edge of the film, if not the scene's own: for trials.
+    pub pixels: Option<usize>,
+    /// Time bins over the scene's window, likewise.
+    pub bins: Option<usize>,
+    /// Folder of the scenes.
+    pub scenes: PathBuf,
+    /// Folder of everything that is written.
+    pub out: PathBuf,
+    /// Commit, machine, flags, seed.
+    pub circumstances: Circumstances,
+    /// The command that repeats it.
+    pub command: String,
+}
+
+impl Options {
+    /// Whether the film is not the scene's own.
+    pub fn is_trial(&self) -> bool {
+        self.pixels.is_some() || self.bins.is_some()
+    }
+
+    /// A scene with the film of these options and further changes (`path=value`).
+    pub fn load(&self, name: &str, changes: &[&str]) -> Result<LoadedScene> {
+        let path = self.scenes.join(format!("{name}.json"));
+        load(&path, &self.changes(&path, changes)?)
+    }
+
+    /// The file of a scene's reference in its folder; trials have others.
+    pub(crate) fn reference(&self, folder: &Path) -> PathBuf {
+        let size = |n: Option<usize>| n.map_or(String::new(), |n| format!("-{n}"));
+        folder.join(format!("reference{}{}.npz", size(self.pixels), size(self.bins)))
+    }
+
+    fn changes(&self, path: &Path, changes: &[&str]) -> Result<Vec<String>> {
+        let mut all: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
+        if let Some(pixels) = self.pixels {
+            all.extend(["width", "height"].map(|side| format!("sensor.film.{side}={pixels}")));
+        }
+        if let Some(bins) = self.bins {
+            let film = load(path, &[])?.scene.film;
+            let time = film.time.ok_or_else(|| no_time(path))?;
+            let width = time.bin_width_opl * time.bins as f64 / bins as f64;
+            all.push(format!("sensor.film.temporal_bins={bins}"));
+            all.push(format!("sensor.film.bin_width_opl={width}"));
+        }
+        Ok(all)
+    }
+}
+
+/// A scene file with changes.
+pub(crate) fn load(path: &Path, changes: &[String]) -> Result<LoadedScene> {
+    let unusable = |error| ValidationError::unusable(path.display().to_string(), error);
+    let overrides: std::result::Result<Vec<_>, _> =
+        changes.iter().map(|change| Override::parse(change)).collect();
+    load_scene(path, &overrides.map_err(unusable)?).map_err(unusable)
+}
+
+fn no_time(path: &Path) -> ValidationError {
+    ValidationError::unusable(path.display().to_string(), "its film has no time axis")
+}
+
+/// Writes a value as JSON, whole or not at all.
+pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| ValidationError::unusable(path.display().to_string(), error))?;
+    Ok(atomic_write(path, |file| std::io::Write::write_all(file, (text + "\n").as_bytes()))?)
+}
+
+/// Writes text, whole or not at all.
+pub(crate) fn write_text(path: &Path, text: &str) -> Result<()> {
+    Ok(atomic_write(path, |file| std::io::Write::write_all(file, text.as_bytes()))?)
+}
+
+/// Makes a folder and sees that it can be written: better now than after the renders.
+pub(crate) fn folder(path: &Path) -> Result<()> {
+    fs::create_dir_all(path).map_err(|error| ValidationError::io(path, error))?;
+    crate::suite::probe(path)
+}
+
+/// The bin that holds an OPL; the nearest one if none does.
+pub(crate) fn bin_of(edges: &[f64], opl: f64) -> usize {
+    let above = edges.partition_point(|&edge| edge <= opl + 1e-9);
+    above.saturating_sub(1).min(edges.len().saturating_sub(2))
+}

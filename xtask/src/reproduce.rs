@@ -1,0 +1,148 @@
+//! `cargo xtask reproduce`: parse, call `tpb_validation::reproduce`, print.
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::{Args, ValueEnum};
+use tpb_validation::reproduce::summary::Summary;
+use tpb_validation::reproduce::{Options, cornell, mirrors};
+use tpb_validation::suite;
+use tpb_validation::{ValidationError, with_threads};
+
+use crate::circumstances;
+use crate::workspace::{Outcome, root, say};
+
+/// Examples below the options.
+const EXAMPLES: &str = "Examples:
+  cargo xtask reproduce all                     everything, about 23 minutes on 2 cores
+  cargo xtask reproduce all --time 160          four times as long, half the noise
+  cargo xtask reproduce mirrors --pixels 64 --bins 80 --time 2    a trial
+
+Time of a run is that of one render at picture quality; all other renders take a fixed part or
+multiple of it, so that the whole takes about 35 times as long. References are kept in the output
+folder and used again; a larger --reference-time adds to them. What was rendered when a run was
+interrupted is used by the next one of the same flags and commit.
+
+Writes index.html, table.md, and for each scene a folder with index.html, viewer.html, result.json,
+pictures and charts.";
+
+/// Which scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Which {
+    /// Figure 2: path tracing and photon beams at equal time
+    CornellBlocks,
+    /// Figure 3: mirrors, a glass ball, caustics
+    Mirrors,
+    /// Both
+    All,
+}
+
+/// Options of `cargo xtask reproduce`.
+#[derive(Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct ReproduceArgs {
+    /// Which scenes
+    #[arg(value_enum, default_value = "all")]
+    which: Which,
+    /// Wall time of one render of the equal-time comparison
+    #[arg(long, value_name = "SECONDS", default_value = "40", value_parser = seconds)]
+    time: Duration,
+    /// Wall time of the reference at picture quality [default: 10 times --time]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    reference_time: Option<Duration>,
+    /// Renders of each method, at least 3
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(3..=100))]
+    replicates: u64,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads [default: all]
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Pixels along an edge instead of the scenes' own: a trial
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(4..=4096))]
+    pixels: Option<u32>,
+    /// Time bins over the scenes' windows: a trial
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=100_000))]
+    bins: Option<u32>,
+    /// Output folder [default: target/reproduce]
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Renders, compares, writes, prints the table.
+pub(crate) fn run(args: &ReproduceArgs) -> Outcome {
+    let started = Instant::now();
+    let options = options(args);
+    // Better now than after the renders.
+    suite::probe(&options.out)?;
+    let circumstances = &options.circumstances;
+    say(&format!("{}; commit {}", circumstances.machine, circumstances.commit));
+    let finish = |options: &Options| -> Result<Summary, ValidationError> {
+        let summary = Summary::read(&options.out);
+        summary.write(&options.out, &options.circumstances, &options.command)?;
+        Ok(summary)
+    };
+    let scenes = |options: &Options| -> Result<Summary, ValidationError> {
+        if args.which != Which::Mirrors {
+            cornell::run(options, &mut say)?;
+            finish(options)?;
+        }
+        if args.which != Which::CornellBlocks {
+            mirrors::run(options, &mut say)?;
+        }
+        finish(options)
+    };
+    let summary = with_threads(args.threads, || scenes(&options))??;
+    say("");
+    for line in summary.markdown().lines() {
+        say(line);
+    }
+    say("");
+    let seconds = started.elapsed().as_secs_f64();
+    say(&format!("{}: {seconds:.0} s", options.out.join("index.html").display()));
+    Ok(true)
+}
+
+fn options(args: &ReproduceArgs) -> Options {
+    let size = |n: Option<u32>| n.map(|n| n as usize);
+    Options {
+        time: args.time,
+        reference_time: args.reference_time.unwrap_or(args.time * 10),
+        replicates: args.replicates,
+        pixels: size(args.pixels),
+        bins: size(args.bins),
+        scenes: root().join("scenes"),
+        out: args.out.clone().unwrap_or_else(|| root().join("target/reproduce")),
+        circumstances: circumstances::of(args.threads, args.seed),
+        command: command(args),
+    }
+}
+
+/// The command that repeats this run.
+fn command(args: &ReproduceArgs) -> String {
+    let which = args.which.to_possible_value().map_or(String::new(), |v| v.get_name().to_owned());
+    let mut command = format!(
+        "cargo xtask reproduce {which} --time {} --replicates {} --seed {}",
+        args.time.as_secs_f64(),
+        args.replicates,
+        args.seed
+    );
+    let numbers = [
+        ("reference-time", args.reference_time.map(|time| time.as_secs_f64().to_string())),
+        ("threads", args.threads.map(|n| n.to_string())),
+        ("pixels", args.pixels.map(|n| n.to_string())),
+        ("bins", args.bins.map(|n| n.to_string())),
+    ];
+    for (name, value) in numbers {
+        command += &value.map_or(String::new(), |value| format!(" --{name} {value}"));
+    }
+    command
+}
+
+/// Seconds of the command line, more than 0.
+fn seconds(text: &str) -> Result<Duration, Box<dyn Error + Send + Sync>> {
+    let time = Duration::try_from_secs_f64(text.parse()?)?;
+    if time.is_zero() { Err("must be more than 0".into()) } else { Ok(time) }
+}
