@@ -103,9 +103,10 @@ impl<'a> Arrived<'a> {
         self.scale.len() / (3 * self.arrays.width)
     }
 
-    /// The scale, with a mark at an OPL \[m\].
-    pub(super) fn paint_scale(&self, opl: f64, samples: &mut [u8]) {
+    /// The scale, perhaps with a mark at an OPL \[m\].
+    pub(super) fn paint_scale(&self, opl: Option<f64>, samples: &mut [u8]) {
         samples.copy_from_slice(&self.scale);
+        let Some(opl) = opl else { return };
         let width = self.arrays.width;
         let at = ((self.colours.position(opl) * width as f64) as usize).min(width - 1);
         for row in samples.chunks_exact_mut(3 * width).skip(1) {

@@ -26,6 +26,7 @@ pub(crate) struct Painter<'a> {
     exposure: Exposure,
     arrived: Option<Arrived<'a>>,
     label: Option<Label>,
+    still: bool,
     channels: usize,
     /// At the image's resolution: its rows, and a scale's.
     small: Vec<u8>,
@@ -68,6 +69,7 @@ impl<'a> Painter<'a> {
             exposure,
             arrived,
             label: label.transpose()?,
+            still: format == Format::Png,
             channels,
             small: vec![0; arrays.width * (arrays.height + scale_rows) * channels],
             width,
@@ -120,6 +122,8 @@ impl<'a> Painter<'a> {
             arrived.advance(frames.bins(frame));
         }
         let arrived = self.arrived.as_ref();
+        // A still has no light of its own time beside all the light.
+        let still = self.still;
         let (image, scale) = self.small.split_at_mut(arrays.pixels() * channels);
         image.par_chunks_exact_mut(arrays.width * channels).enumerate().for_each(|(y, row)| {
             let mut cell = vec![0.0; arrays.channels];
@@ -132,7 +136,8 @@ impl<'a> Painter<'a> {
                             [r, g, b] => Spectrum([r, g, b]).luminance(),
                             _ => cell[0],
                         };
-                        [*r, *g, *b] = arrived.colour(pixel, map.grey(light)).map(srgb);
+                        let light = if still { 0.0 } else { map.grey(light) };
+                        [*r, *g, *b] = arrived.colour(pixel, light).map(srgb);
                     }
                     ([r, g, b], None, &[red, green, blue]) => {
                         [*r, *g, *b] = map.colour([red, green, blue]).map(srgb);
@@ -142,7 +147,7 @@ impl<'a> Painter<'a> {
             }
         });
         if let Some(arrived) = arrived {
-            arrived.paint_scale(time, scale);
+            arrived.paint_scale((!still).then_some(time), scale);
         }
         self.enlarge();
         if let Some(label) = &self.label {

@@ -95,6 +95,29 @@ fn a_png_is_one_picture_of_the_range() {
     assert_eq!(lit, [true, true, false], "the third arrives later");
 }
 
+/// Regression: the light itself lay over the hues in white.
+#[test]
+fn a_png_of_arrival_times_is_that_of_the_result_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, still) = (folder.path().join("a.png"), folder.path().join("b.png"));
+    for kind in [ArrivalTime::Mean, ArrivalTime::Peak] {
+        let mut arrays = wave(3);
+        let cells = arrays.transient.chunks_exact(3 * arrays.bins);
+        let sum = |cells: &[f32], channel: usize| -> f64 {
+            cells.iter().skip(channel).step_by(3).map(|&cell| f64::from(cell)).sum()
+        };
+        arrays.steady = cells.flat_map(|cells| [0, 1, 2].map(|c| sum(cells, c))).collect();
+        let options = VideoOptions { colour_time: Some(kind), ..VideoOptions::default() };
+        write(&arrays, &path, &options).unwrap();
+        let pictures = PictureOptions { arrival: kind, ..PictureOptions::default() };
+        arrays.write_arrival_time(&still, &pictures).unwrap();
+        let (found, expected) = (decode_png(&path), decode_png(&still));
+        assert_eq!(found.size, expected.size);
+        // Sums in another order may round differently.
+        assert!(difference(&found.frames[0], &expected.frames[0]).1 <= 1, "{kind:?}");
+    }
+}
+
 /// Mean and largest difference of samples.
 fn difference(a: &[u8], b: &[u8]) -> (f64, u8) {
     let differences = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
