@@ -59,15 +59,12 @@ pub const ENTRIES: [Entry; 9] = [
         text: "A pulse of a spot light meets a torus knot of tinted glass in fog. Light through the \
                glass is late, and bent into caustics: sheets in the fog, lines on the floor.",
         moments: [
-            at(0.30, "the front of the pulse, a bowl seen from its side, on its way to the knot"),
+            at(0.37, "the front of the pulse, bends of the knot cut out of it"),
             at(
-                0.44,
-                "the front with the shape of the knot cut out: glass slows it and bends it aside",
+                0.52,
+                "light from the glass is behind the front, and drawn together to sheets in the fog",
             ),
-            at(
-                0.60,
-                "caustics run over the floor, the light from the glass behind the straight light",
-            ),
+            at(0.67, "caustics run over the floor, light from the glass behind the straight light"),
         ],
     },
     Entry {
@@ -87,12 +84,9 @@ pub const ENTRIES: [Entry; 9] = [
         text: "A tumbler with a liquid that scatters and absorbs, lit from the left: three kinds of \
                interfaces, smoke around. Light is slower in the liquid by a third.",
         moments: [
-            at(0.35, "the front meets the glass and lights the liquid's edge"),
-            at(0.58, "in the liquid the front leans back behind the front outside"),
-            at(
-                0.80,
-                "the liquid glows with light that was scattered often; a caustic on the table",
-            ),
+            at(0.30, "the front has met the glass and enters the liquid"),
+            at(0.44, "in the liquid the front is behind the one outside, and steeper"),
+            at(0.62, "light leaves the liquid below, drawn together onto the table"),
         ],
     },
     Entry {
@@ -101,9 +95,9 @@ pub const ENTRIES: [Entry; 9] = [
         text: "A spot light shines through a window with cross bars into dusty air: the front of the \
                pulse carries the image of the window through the room.",
         moments: [
-            at(0.31, "the image of the window enters the room"),
+            at(0.30, "the image of the window enters the room"),
             at(0.52, "it has met the ball; its lower edge runs over the floor"),
-            at(0.83, "it meets the table, which lights what is around it"),
+            at(0.82, "it meets the table, which lights what is around it"),
         ],
     },
     Entry {
@@ -112,12 +106,12 @@ pub const ENTRIES: [Entry; 9] = [
         text: "A flash lights a spot of the left wall; all else is its indirect light. There is no \
                medium: the plan leaves out beams, free flights and transmittance.",
         moments: [
-            at(0.44, "rings of light from the wall run over floor, ceiling and pillar"),
+            at(0.37, "light from the wall meets the pillar; rings run over floor and ceiling"),
+            at(0.67, "the front on the back wall, behind the pillar"),
             at(
-                0.66,
-                "the front has reached the back wall and is mirrored, rough, by the steel ball",
+                0.76,
+                "the front with the pillar's shadow; the right wall lights up, mirrored by the steel ball",
             ),
-            at(0.76, "the front with the shadow of the pillar; the right wall lights up"),
         ],
     },
     Entry {
@@ -127,8 +121,8 @@ pub const ENTRIES: [Entry; 9] = [
                leaves out surface photons, specular chains and, for beams, next-event estimation.",
         moments: [
             at(0.22, "the front enters the haze"),
-            at(0.44, "it lights the first cloud, and a second one"),
-            at(0.72, "shadows of the clouds, carried along by the front"),
+            at(0.44, "it lights the first cloud"),
+            at(0.67, "the clouds' shadows, carried along by the front"),
         ],
     },
     Entry {
