@@ -58,6 +58,7 @@ impl Factor {
     }
 
     /// The same where both are multiplied by constants first.
+    #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             value: self.value.map(|value| value * factor),

@@ -73,7 +73,7 @@ impl Page {
 
     /// A list.
     pub fn list(&mut self, items: &[String]) {
-        let items: String = items.iter().map(|item| format!("<li>{}</li>", escape(item))).collect();
+        let items = joined(items, |item| format!("<li>{}</li>", escape(item)));
         let _ = writeln!(self.body, "<ul>{items}</ul>");
     }
 
@@ -84,13 +84,11 @@ impl Page {
 
     /// A table; the first column names the rows.
     pub fn table(&mut self, caption: &str, head: &[&str], rows: &[Vec<String>]) {
-        let head: String =
-            head.iter().map(|cell| format!("<th scope=\"col\">{}</th>", escape(cell))).collect();
-        let row = |row: &Vec<String>| -> String {
-            let cells = row.iter().map(|cell| format!("<td>{}</td>", escape(cell)));
-            format!("<tr>{}</tr>\n", cells.collect::<String>())
+        let head = joined(head, |cell| format!("<th scope=\"col\">{}</th>", escape(cell)));
+        let row = |row: &Vec<String>| {
+            format!("<tr>{}</tr>\n", joined(row, |cell| format!("<td>{}</td>", escape(cell))))
         };
-        let rows: String = rows.iter().map(row).collect();
+        let rows = joined(rows, row);
         let _ = writeln!(
             self.body,
             "<div class=\"wide\"><table><caption>{}</caption><thead><tr>{head}</tr></thead><tbody>\n{rows}</tbody></table></div>",
@@ -105,8 +103,7 @@ impl Page {
         columns: &[String],
         rows: &[(String, Vec<(Picture, String)>)],
     ) -> Result<()> {
-        let head: String =
-            columns.iter().map(|c| format!("<th scope=\"col\">{}</th>", escape(c))).collect();
+        let head = joined(columns, |c| format!("<th scope=\"col\">{}</th>", escape(c)));
         let mut lines = String::new();
         for (name, pictures) in rows {
             let _ = write!(lines, "<tr><th scope=\"row\">{}</th>", escape(name));
@@ -143,10 +140,9 @@ impl Page {
 
     /// Names and values.
     pub fn facts(&mut self, facts: &[(&str, String)]) {
-        let facts: String = facts
-            .iter()
-            .map(|(name, value)| format!("<dt>{}</dt><dd>{}</dd>\n", escape(name), escape(value)))
-            .collect();
+        let facts = joined(facts, |(name, value)| {
+            format!("<dt>{}</dt><dd>{}</dd>\n", escape(name), escape(value))
+        });
         let _ = writeln!(self.body, "<dl>{facts}</dl>");
     }
 
@@ -173,6 +169,11 @@ impl Page {
         let html = self.html();
         Ok(atomic_write(path, |file| std::io::Write::write_all(file, html.as_bytes()))?)
     }
+}
+
+/// The texts of all items, one after the other.
+fn joined<T>(items: &[T], text: impl Fn(&T) -> String) -> String {
+    items.iter().map(text).collect::<Vec<_>>().concat()
 }
 
 fn image(bytes: &[u8], kind: &str, alt: &str, class: &str) -> String {

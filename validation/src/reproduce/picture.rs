@@ -51,16 +51,8 @@ impl Picture {
         })
     }
 
-    /// Every pixel as a square of `times` by `times`.
-    pub fn enlarged(&self, times: usize) -> Self {
-        Self::by_pixel(self.width * times, self.height * times, |pixel| {
-            let (x, y) =
-                (pixel % (self.width * times) / times, pixel / (self.width * times) / times);
-            self.pixels[y * self.width + x]
-        })
-    }
-
     /// The mean of squares of `side` by `side`, in display values; less at right and lower ends.
+    #[must_use]
     pub fn reduced(&self, side: usize) -> Self {
         let (width, height) = (self.width.div_ceil(side), self.height.div_ceil(side));
         Self::by_pixel(width, height, |pixel| {
@@ -166,9 +158,11 @@ mod tests {
     }
 
     #[test]
-    fn enlarging_and_reducing_are_inverse() {
-        let picture = Picture::by_pixel(5, 3, |pixel| [pixel as u8 * 3, 1, 2]);
-        assert_eq!(picture.enlarged(4).reduced(4), picture);
+    fn reducing_takes_means_also_at_the_ends() {
+        let picture = Picture::by_pixel(3, 2, |pixel| [pixel as u8 * 10, 7, pixel as u8]);
+        // Red: (0 + 10 + 30 + 40)/4 and (20 + 50)/2; blue is rounded: (2 + 5)/2.
+        assert_eq!(picture.reduced(2).pixels, [[20, 7, 2], [35, 7, 4]]);
+        assert_eq!(picture.reduced(1), picture);
     }
 
     #[test]

@@ -307,7 +307,9 @@ pub fn first_with_variance(replicates: &[Replicate], like: &Arrays) -> Result<Ar
         }
     }
     let freedom = others.len() as f32;
-    squares.iter_mut().for_each(|square| *square /= freedom);
+    for square in &mut squares {
+        *square /= freedom;
+    }
     arrays.variance = Some(squares);
     Ok(arrays)
 }

@@ -70,7 +70,7 @@ pub(crate) fn by_part(comparison: &Comparison, parts: &[Part]) -> Vec<Vec<String
         for split in &part.splits {
             match split {
                 Some(split) => {
-                    row.extend([&split.nmse, &split.variance, &split.squared_bias].map(interval))
+                    row.extend([&split.nmse, &split.variance, &split.squared_bias].map(interval));
                 }
                 None => row.extend((0..3).map(|_| "—".to_owned())),
             }
