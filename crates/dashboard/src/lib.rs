@@ -1,6 +1,6 @@
 //! Floor 2: the dashboard, one self-contained page, and the histories that feed it.
 //!
-//! [`write`] reads what other programs left ([`Sources`]) and writes `index.html`, which opens from
+//! [`write()`] reads what other programs left ([`Sources`]) and writes `index.html`, which opens from
 //! a file and asks the network for nothing, and `data.json` with the same data. It runs nothing and
 //! makes nothing up: where data are missing, the page names the command that makes them.
 //!

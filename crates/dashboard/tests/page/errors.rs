@@ -2,7 +2,7 @@
 
 use tpb_browser::Page;
 
-use crate::workshop::{HALF, LAWS, PROCESSORS, Workshop};
+use crate::workshop::{HALVES, LAWS, PROCESSORS, Workshop};
 use crate::{ask, press, text, with_page};
 
 /// CPU seconds of the first and last checkpoint.
@@ -42,8 +42,16 @@ fn curves_have_the_values_of_the_file_with_their_bands() {
                 assert_near(cpu, ENDS[usize::from(k == 5)], "CPU seconds");
                 let column = |part: usize| format!("{PLOT}.data[{}][{k}]", 3 * method + part);
                 assert_near(number(page, &column(3)), law(method, cpu), "value");
-                assert_near(number(page, &column(1)), law(method, cpu) * (1.0 - HALF), "low");
-                assert_near(number(page, &column(2)), law(method, cpu) * (1.0 + HALF), "high");
+                assert_near(
+                    number(page, &column(1)),
+                    law(method, cpu) * (1.0 - HALVES[method]),
+                    "low",
+                );
+                assert_near(
+                    number(page, &column(2)),
+                    law(method, cpu) * (1.0 + HALVES[method]),
+                    "high",
+                );
             }
         }
         press(page, &["c"]);
@@ -79,8 +87,8 @@ fn the_tip_tells_the_point_under_the_cursor() {
         let nmse = law(1, 0.8 * PROCESSORS);
         let expected = format!(
             "beams, 8 passes\nNMSE {nmse:.4} [{:.4}, {:.4}]\nCPU 1.28 s, wall 0.800 s",
-            nmse * (1.0 - HALF),
-            nmse * (1.0 + HALF)
+            nmse * (1.0 - HALVES[1]),
+            nmse * (1.0 + HALVES[1])
         );
         assert_eq!(tip, expected);
         // A click sets the time at which methods are compared.
@@ -113,10 +121,17 @@ fn factors_are_those_of_the_power_laws() {
             let found = ask_factor(page, &format!("factorAtTime(p, b, {time})"));
             let factor = law(0, time) / law(1, time);
             assert_near(found["factor"].as_f64().unwrap(), factor, "factor at equal time");
-            let (down, up) = (-(1.0 - HALF).ln(), (1.0 + HALF).ln());
-            let half = down.hypot(up);
-            assert_near(found["interval"][0].as_f64().unwrap(), factor * (-half).exp(), "low");
-            assert_near(found["interval"][1].as_f64().unwrap(), factor * half.exp(), "high");
+            let (down, up) = (HALVES.map(|h| -(1.0 - h).ln()), HALVES.map(|h| (1.0 + h).ln()));
+            assert_near(
+                found["interval"][0].as_f64().unwrap(),
+                factor * (-down[0].hypot(up[1])).exp(),
+                "low",
+            );
+            assert_near(
+                found["interval"][1].as_f64().unwrap(),
+                factor * up[0].hypot(down[1]).exp(),
+                "high",
+            );
         }
         assert_eq!(ask_factor(page, "factorAtTime(p, b, 100)"), serde_json::Value::Null);
         // At equal error: only between the best of path and the worst of beams is there a factor.
@@ -128,7 +143,7 @@ fn factors_are_those_of_the_power_laws() {
         assert_near(found["most"].as_f64().unwrap(), ENDS[0] / ENDS[1], "the other way round");
         let found = ask_factor(page, "factorAtError(p, p, 0.4)");
         assert_near(found["factor"].as_f64().unwrap(), 1.0, "with itself");
-        let (early, late) = (1.0 - HALF, 1.0 + HALF);
+        let (early, late) = (1.0 - HALVES[0], 1.0 + HALVES[0]);
         let half = (-early.ln()).hypot(late.ln());
         assert_near(
             found["interval"][1].as_f64().unwrap(),
@@ -155,8 +170,8 @@ fn factors_are_those_of_the_power_laws() {
         let nmse = law(1, ENDS[1]);
         let expected = format!(
             "|beams|5.12 s|{nmse:.5} [{:.5}, {:.5}]|{shown}|≥ 32.0",
-            nmse * (1.0 - HALF),
-            nmse * (1.0 + HALF)
+            nmse * (1.0 - HALVES[1]),
+            nmse * (1.0 + HALVES[1])
         );
         assert_eq!(all[1], expected);
         press(page, &["b"]);

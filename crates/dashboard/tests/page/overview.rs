@@ -28,7 +28,10 @@ fn the_table_shows_verdicts_and_numbers() {
                 "matrix/fog/beams-1d",
                 "✗ failed|matrix/fog/beams-1d|+1.20 % … +3.40 %|1.0e−9|2.5 s|kernel: NOT REJECTED||bbbbbbbb-dirty",
             ),
-            ("samplers/phase", "✓ passed|samplers/phase||0.600|2.5 s|||bbbbbbbb-dirty"),
+            (
+                "samplers/phase",
+                "✗ control failed|samplers/phase||0.600|2.5 s|warp: NOT REJECTED||bbbbbbbb-dirty",
+            ),
             ("matrix/room/path", "· not run|matrix/room/path|||full suite|||"),
             ("glass/clock", "! broken|glass/clock|no result|–|< 0.1 s|||aaaaaaaa"),
         ];
@@ -41,8 +44,8 @@ fn the_table_shows_verdicts_and_numbers() {
             page,
             "[...document.querySelectorAll('#counts button')].map((b) => b.innerText.replace('\\n', ' ')).join()",
         );
-        assert_eq!(counts, "2 passed,1 failed,1 broken,1 not run,1 retired");
-        assert!(text(page, "#counts-note").starts_with("1 of 2 negative controls were rejected"));
+        assert_eq!(counts, "1 passed,2 failed,1 broken,1 not run,1 retired");
+        assert!(text(page, "#counts-note").starts_with("1 of 3 negative controls were rejected"));
         let latest = text(page, "#latest-run");
         for part in [
             "cccccccccccc",
@@ -55,9 +58,9 @@ fn the_table_shows_verdicts_and_numbers() {
         }
         assert_eq!(ask(page, "document.querySelectorAll('#runs tbody tr').length"), 3);
         assert!(text(page, "#remarks").contains("1 lines could not be read"));
-        assert_eq!(text(page, "#tab-overview .badge"), "2");
+        assert_eq!(text(page, "#tab-overview .badge"), "3");
     });
-    assert_eq!(report.experiments, [4, 3, 2], "with controls, and what is retired");
+    assert_eq!(report.experiments, [4, 4, 2], "with controls, and what is retired");
     assert_eq!((report.scenes, report.benchmarks, report.linked), (2, 2, 2));
     assert_eq!(report.remarks.len(), 2);
 }
@@ -154,10 +157,10 @@ fn experiments_are_found_by_text_pattern_and_verdict() {
             assert_eq!(ask(page, SHOWN), expected, "{words}");
         }
         for (verdict, expected) in [
-            ("failed", "matrix/fog/beams-1d"),
+            ("failed", "samplers/phase,matrix/fog/beams-1d"),
             ("broken", "glass/clock"),
             ("missing", "matrix/room/path"),
-            ("passed", "samplers/phase,matrix/fog/path"),
+            ("passed", "matrix/fog/path"),
             ("retired", "old/experiment"),
         ] {
             let choose = format!(
@@ -201,7 +204,7 @@ fn what_is_missing_comes_with_the_command_that_makes_it() {
             assert!(text(page, &format!("#{tab}")).contains(command), "{tab}");
         }
     });
-    assert_eq!(report.experiments, [0, 0, 8]);
+    assert_eq!(report.experiments, [0, 0, 9]);
 }
 
 #[test]

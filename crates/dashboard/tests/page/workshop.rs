@@ -13,8 +13,8 @@ pub(crate) const LAWS: [(&str, f64, f64); 2] = [("path", -1.0, 0.5), ("beams", -
 /// CPU seconds per wall second.
 pub(crate) const PROCESSORS: f64 = 1.6;
 
-/// Half width of the intervals, as a share of the value.
-pub(crate) const HALF: f64 = 0.2;
+/// Half width of the intervals of each method, as a share of the value.
+pub(crate) const HALVES: [f64; 2] = [0.2, 0.1];
 
 /// A folder that is removed at the end.
 pub(crate) struct Workshop {
@@ -85,6 +85,7 @@ fn plan() -> Vec<Planned> {
     };
     vec![
         planned("samplers/phase", true),
+        planned("control/warp/samplers/phase", true),
         planned("matrix/fog/path", true),
         planned("control/late/matrix/fog/path", true),
         planned("control/loss/matrix/fog/path", false),
@@ -128,6 +129,7 @@ fn runs() -> String {
             "bbbbbbbbbbbb-dirty",
             vec![
                 record("samplers/phase", "passed", &Value::Null, &json!(0.6)),
+                record("control/warp/samplers/phase", "failed", &Value::Null, &json!(0.3)),
                 path(-0.003, 0.002),
                 late,
                 failed,
@@ -142,11 +144,11 @@ fn runs() -> String {
 
 /// Errors that follow their laws exactly.
 fn scene(name: &str) -> Value {
-    let estimate = |value: f64| {
-        json!({ "value": value, "standard_error": 0.1 * value,
-        "interval": [value * (1.0 - HALF), value * (1.0 + HALF)] })
-    };
-    let curve = |&(method, exponent, size): &(&str, f64, f64)| {
+    let curve = |(&(method, exponent, size), half): (&(&str, f64, f64), f64)| {
+        let estimate = |value: f64| {
+            json!({ "value": value, "standard_error": 0.1 * value,
+                    "interval": [value * (1.0 - half), value * (1.0 + half)] })
+        };
         let checkpoints: Vec<Value> = (0..6)
             .map(|k| {
                 let wall = 0.1 * 2.0_f64.powi(k);
@@ -166,7 +168,7 @@ fn scene(name: &str) -> Value {
                 "slope": { "value": exponent, "interval": [exponent - 0.05, exponent + 0.05] },
                 "variance_slope": null })
     };
-    let curves: Vec<Value> = LAWS.iter().map(curve).collect();
+    let curves: Vec<Value> = LAWS.iter().zip(HALVES).map(curve).collect();
     json!({ "scene": name, "reference": { "commit": "rrrrrrrrrrrr", "scene": {}, "cpu_seconds": 960.0 },
             "reference_nmse": 7e-4, "pixels": [4033, 4096], "replicates": 8, "seed": 1, "threads": 2,
             "circumstances": { "commit": "eeee", "machine": "its machine", "flags": "error-time" },
