@@ -15,7 +15,7 @@ use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use super::Reel;
 use super::palette::{Draw, Palette};
 
-/// How many times [`write`] plays the frames.
+/// How many times [`write()`] plays the frames.
 pub(crate) fn rounds(channels: usize) -> usize {
     if channels == 3 { 2 } else { 1 }
 }
