@@ -146,7 +146,7 @@ impl Room {
                 straight(self.focus()),
                 false,
             ),
-            ("the front meets the back wall", self.back, straight(self.back), true),
+            ("the front meets the back wall", self.back, straight(self.back), false),
             (
                 "the light through the glass is at its focus",
                 self.focus(),
