@@ -87,6 +87,7 @@ pub(crate) fn film(c: &Comparison) -> Vec<(&'static str, String)> {
     vec![
         ("film", format!("{}x{} pixels, {} bins", c.shape[0], c.shape[1], c.shape[2])),
         ("options", options.collect::<Vec<_>>().join("; ")),
+        ("all numbers", "result.json".to_owned()),
     ]
 }
 
@@ -105,7 +106,6 @@ pub(crate) fn provenance(
         ("seed", circumstances.seed.to_string()),
     ];
     facts.extend(more.iter().cloned());
-    facts.push(("all numbers", "result.json".to_owned()));
     page.facts(&facts);
     page.command(command);
 }

@@ -145,15 +145,20 @@ fn factor(comparison: &Comparison) -> String {
     format!("{} (all pixels: {})", text(whole.factor), text(whole.factor_whole))
 }
 
-/// Kinds and windows that path tracing wins, with factor.
+/// Kinds and windows that path tracing wins, with factor, and the whole image if it wins that.
 fn lost(comparison: &Comparison) -> String {
     let parts = comparison.kinds.iter().chain(&comparison.windows);
-    let lost: Vec<String> = parts
+    let mut lost: Vec<String> = parts
         .filter(|part| part.factor.is_some() && part.winner() == Winner::First)
         .map(|part| {
             let factor = part.factor.map_or(String::new(), |factor| factor.text());
             format!("{} ({factor}; {:.0} % of \u{3a3}r\u{b2})", part.label, 100.0 * part.share)
         })
         .collect();
+    let whole = comparison.whole().factor_whole;
+    if let Some(factor) = whole.filter(|factor| factor.winner() == Winner::First) {
+        // Over judged pixels nothing of this is seen.
+        lost.push(format!("all pixels, with those that see a lamp ({})", factor.text()));
+    }
     if lost.is_empty() { "none resolved".to_owned() } else { lost.join("; ") }
 }
