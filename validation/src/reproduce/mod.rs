@@ -10,7 +10,7 @@
 //!
 //! | module | subject |
 //! | --- | --- |
-//! | [`reference`], [`truth`] | the long render and its own noise |
+//! | [`mod@reference`], [`truth`] | the long render and its own noise |
 //! | [`race`], [`halves`] | renders at equal time, and how they are kept |
 //! | [`contest`], [`judge`], [`compare`], [`factor`] | errors, their parts, their ratios |
 //! | [`maps`], [`charts`], [`picture`], [`colour`], [`page`] | what is looked at |
