@@ -10,7 +10,7 @@ use tpb_light::LightOptions;
 use tpb_optics::{Coefficients, Spectrum};
 use tpb_path::PathOptions;
 use tpb_render::{Budget, RunSettings};
-use tpb_scene::{Bsdf, EmitterKind, Hit, Plan, Reflector, Scene};
+use tpb_scene::{Bsdf, EmitterKind, Plan, Reflector, Scene};
 
 use crate::cube::dilate;
 use crate::error::Result;
@@ -109,25 +109,21 @@ fn without_scattering(scene: &Scene) -> Scene {
 /// Pixels within one pixel of which neither a mirror nor glass is seen.
 fn sees_no_mirror(scene: &Scene) -> Vec<bool> {
     let (width, height) = (scene.film.width, scene.film.height);
-    let smooth = |hit: &Hit| match scene.shape(hit.primitive).bsdf {
-        Bsdf::Dielectric(_) | Bsdf::ThinDielectric(_) => true,
-        Bsdf::Opaque { front, back } => {
-            matches!(front, Reflector::Mirror(_)) || matches!(back, Reflector::Mirror(_))
-        }
-        Bsdf::Null | Bsdf::RoughDielectric(..) => false,
-    };
-    let within = |index: usize| (index as f64 + 0.5) / GRID as f64;
-    let seen: Vec<bool> = (0..width * height)
-        .map(|pixel| {
-            let (x, y) = ((pixel % width) as f64, (pixel / width) as f64);
-            (0..GRID * GRID).any(|ray| {
-                let (x, y) = (x + within(ray % GRID), y + within(ray / GRID));
-                let flight = scene.fly(&scene.eye(), scene.sensor.direction(x, y));
-                flight.hit.as_ref().is_some_and(&smooth)
-            })
-        })
-        .collect();
+    let seen: Vec<bool> = (0..width * height).map(|pixel| !is_plain(scene, pixel)).collect();
     dilate(&seen, width, height).into_iter().map(|near| !near).collect()
+}
+
+/// Whether nothing smooth, mirror or glass, is what a pixel looks at.
+pub(crate) fn is_plain(scene: &Scene, pixel: usize) -> bool {
+    let (x, y) = (pixel % scene.film.width, pixel / scene.film.width);
+    let at = |i: usize| (i as f64 + 0.5) / GRID as f64;
+    (0..GRID * GRID).all(|i| {
+        let direction = scene.sensor.direction(x as f64 + at(i % GRID), y as f64 + at(i / GRID));
+        scene.fly(&scene.eye(), direction).hit.is_none_or(|hit| {
+            let bsdf = &scene.shape(hit.primitive).bsdf;
+            !(bsdf.is_mirror() || bsdf.is_smooth_glass())
+        })
+    })
 }
 
 #[cfg(test)]

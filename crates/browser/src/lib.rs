@@ -16,6 +16,7 @@ mod keys;
 mod page;
 mod pipe;
 mod program;
+pub mod testing;
 
 use std::path::PathBuf;
 

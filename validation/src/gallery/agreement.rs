@@ -22,6 +22,7 @@ use tpb_scene::{FilmSpec, Item, MethodName, Plan, Scene};
 use crate::contrasts::LinearContrast;
 use crate::cube::Cube;
 use crate::error::{Result, ValidationError};
+use crate::judged::is_plain;
 use crate::measure::{BatchPlan, Estimator, batches, layout};
 use crate::statistics::{Batches, Criterion, Judgement, Target, judge};
 
@@ -29,8 +30,6 @@ use crate::statistics::{Batches, Criterion, Judgement, Target, judge};
 const BLOCKS: [usize; 2] = [4, 3];
 /// Parts of the window.
 const PARTS: usize = 4;
-/// Rays along a pixel's edge by which it is told what it looks at.
-const LOOKS: usize = 4;
 
 /// How a comparison is made.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,19 +129,6 @@ fn overlap(
         [_] if method == MethodName::Light => Ok((0..pixels).map(|p| is_plain(scene, p)).collect()),
         [item, ..] => Err(format!("it leaves out {}", item.part)),
     }
-}
-
-/// Whether nothing smooth, mirror or glass, is what a pixel looks at.
-fn is_plain(scene: &Scene, pixel: usize) -> bool {
-    let (x, y) = (pixel % scene.film.width, pixel / scene.film.width);
-    let at = |i: usize| (i as f64 + 0.5) / LOOKS as f64;
-    (0..LOOKS * LOOKS).all(|i| {
-        let direction = scene.sensor.direction(x as f64 + at(i % LOOKS), y as f64 + at(i / LOOKS));
-        scene.fly(&scene.eye(), direction).hit.is_none_or(|hit| {
-            let bsdf = &scene.shape(hit.primitive).bsdf;
-            !(bsdf.is_mirror() || bsdf.is_smooth_glass())
-        })
-    })
 }
 
 fn compare(

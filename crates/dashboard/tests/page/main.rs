@@ -11,7 +11,8 @@ mod overview;
 mod workshop;
 
 use serde_json::Value;
-use tpb_browser::{Browser, Page};
+use tpb_browser::Page;
+use tpb_browser::testing::{press, with_file};
 use tpb_dashboard::{DashboardReport, write};
 
 use crate::workshop::Workshop;
@@ -20,12 +21,7 @@ use crate::workshop::Workshop;
 #[track_caller]
 fn with_page(workshop: &Workshop, test: impl FnOnce(&mut Page<'_>)) -> DashboardReport {
     let report = write(&workshop.sources()).expect("a dashboard");
-    let mut browser = Browser::start().unwrap_or_else(|error| panic!("{error}"));
-    let mut page = browser.open(&report.page).expect("the page opens");
-    page.wait_for("window.tpbDashboard").expect("the page starts");
-    test(&mut page);
-    let problems = page.problems();
-    assert!(problems.is_empty(), "{problems:#?}");
+    with_file(&report.page, "window.tpbDashboard", test);
     report
 }
 
@@ -41,12 +37,4 @@ fn ask(page: &mut Page<'_>, script: &str) -> Value {
 fn text(page: &mut Page<'_>, selector: &str) -> String {
     let value = ask(page, &format!("document.querySelector(`{selector}`).innerText"));
     value.as_str().unwrap_or_else(|| panic!("no text in {selector}")).to_owned()
-}
-
-/// Presses keys, one after the other.
-#[track_caller]
-fn press(page: &mut Page<'_>, keys: &[&str]) {
-    for key in keys {
-        page.press(key).expect("a key");
-    }
 }

@@ -1,20 +1,10 @@
 //! Dark and light, wide and narrow, in words for those who do not see it.
 
+use tpb_browser::testing::CONTRAST;
 use tpb_browser::{Page, Viewport};
 
 use crate::scene::Scene;
 use crate::{ask, press, with_page};
-
-/// Contrast of two colours (WCAG 2): of text and its background.
-const CONTRAST: &str = "((element) => { \
-    const parse = (text) => text.match(/[\\d.]+/g).map(Number); \
-    const light = ([r, g, b]) => [r, g, b].map((v) => v / 255) \
-        .map((v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4) \
-        .reduce((sum, v, i) => sum + v * [0.2126, 0.7152, 0.0722][i], 0); \
-    const opaque = (e) => { const c = parse(getComputedStyle(e).backgroundColor); \
-        return c.length < 4 || c[3] > 0 ? c : opaque(e.parentElement); }; \
-    const [a, b] = [light(parse(getComputedStyle(element).color)), light(opaque(element))]; \
-    return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05); })";
 
 #[test]
 fn both_themes_can_be_read_and_follow_the_system() {

@@ -12,7 +12,8 @@ mod values;
 use std::path::Path;
 
 use serde_json::Value;
-use tpb_browser::{Browser, Page};
+use tpb_browser::Page;
+use tpb_browser::testing::press;
 use tpb_viewer::{Comparison, PageReport, write_comparison};
 
 /// Writes a comparison, opens it, uses it, and makes sure that nothing went wrong meanwhile.
@@ -29,12 +30,7 @@ fn with_page(comparison: &Comparison<'_>, test: impl FnOnce(&mut Page<'_>)) -> P
 /// The same with a page that is there already.
 #[track_caller]
 fn with_file(file: &Path, test: impl FnOnce(&mut Page<'_>)) {
-    let mut browser = Browser::start().unwrap_or_else(|error| panic!("{error}"));
-    let mut page = browser.open(file).expect("the page opens");
-    page.wait_for("window.tpbViewer").expect("the page starts");
-    test(&mut page);
-    let problems = page.problems();
-    assert!(problems.is_empty(), "{problems:#?}");
+    tpb_browser::testing::with_file(file, "window.tpbViewer", test);
 }
 
 /// The value of a script, after everything is drawn.
@@ -49,12 +45,4 @@ fn ask(page: &mut Page<'_>, script: &str) -> Value {
 fn numbers(value: &Value) -> Vec<f64> {
     let values = value.as_array().unwrap_or_else(|| panic!("no list: {value}"));
     values.iter().map(|value| value.as_f64().unwrap_or(f64::NAN)).collect()
-}
-
-/// Presses keys, one after the other.
-#[track_caller]
-fn press(page: &mut Page<'_>, keys: &[&str]) {
-    for key in keys {
-        page.press(key).expect("a key");
-    }
 }
