@@ -14,7 +14,8 @@ use crate::workspace::{Outcome, root, say};
 /// Options of `cargo xtask dashboard`.
 #[derive(Args)]
 #[command(after_help = "\
-Runs no experiment: it shows what is there, and names the command that makes what is not.
+Runs no experiment: it shows what is there, and names the command that makes what is not. The output
+folder is whole by itself: pages of other commands are copied into it.
 
   experiments          target/validation/history.jsonl, validation/history.jsonl
   error against time   target/error-time/*.json
@@ -94,7 +95,7 @@ fn shelves(from: &Path) -> Vec<Shelf> {
     vec![
         shelf("The paper's scenes", "reproduce", "cargo xtask reproduce all"),
         shelf("Gallery", "gallery", "cargo xtask gallery"),
-        shelf("Criterion's own report", "criterion/report", "cargo bench --package tpb-benches"),
+        shelf("Criterion's own report", "criterion", "cargo bench --package tpb-benches"),
     ]
 }
 
@@ -105,8 +106,12 @@ fn tell(report: &DashboardReport) {
     let [passed, failed, without] = report.experiments;
     say(&format!(
         "experiments: {passed} passed, {failed} did not, {without} without a result; \
-         {} scenes with errors against time; {} benchmarks; {} pages",
-        report.scenes, report.benchmarks, report.linked
+         {} scenes with errors against time; {} benchmarks; {} pages, copied with what they show \
+         ({:.1} MB)",
+        report.scenes,
+        report.benchmarks,
+        report.linked,
+        report.copied as f64 / 1e6
     ));
     say(&format!("wrote {} ({:.1} MB)", report.page.display(), report.bytes as f64 / 1e6));
 }

@@ -12,6 +12,12 @@ pub enum DashboardError {
         /// The system's reason.
         source: std::io::Error,
     },
+    /// Where copies of pages belong, there is something else.
+    #[error("{}: is in the way of copied pages, and was not made by us", path.display())]
+    Occupied {
+        /// The folder.
+        path: PathBuf,
+    },
     /// A file cannot be written whole.
     #[error(transparent)]
     Film(#[from] tpb_film::FilmError),

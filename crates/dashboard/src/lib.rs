@@ -1,7 +1,8 @@
-//! Floor 2: the dashboard, one self-contained page, and the histories that feed it.
+//! Floor 2: the dashboard, one self-contained folder, and the histories that feed it.
 //!
 //! [`write()`] reads what other programs left ([`Sources`]) and writes `index.html`, which opens from
-//! a file and asks the network for nothing, and `data.json` with the same data. It runs nothing and
+//! a file and asks the network for nothing, `data.json` with the same data, and `pages` with copies of
+//! the pages that it links: the folder can be moved, packed and sent. It runs nothing and
 //! makes nothing up: where data are missing, the page names the command that makes them.
 //!
 //! | module | subject |
@@ -12,6 +13,7 @@
 //! | [`curves`] | errors against run time |
 //! | `overview` | every experiment with its latest result and its history |
 //! | `shelves` | pages of other commands |
+//! | `copies` | their copies |
 //! | `page` | the files that are written |
 //!
 //! A link may say what is shown first: `index.html#tab=errors&scene=cornell-blocks&clock=wall`; also
@@ -22,6 +24,7 @@
 
 mod assets;
 pub mod benchmarks;
+mod copies;
 pub mod curves;
 mod error;
 pub mod history;

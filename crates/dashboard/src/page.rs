@@ -12,6 +12,7 @@ use tpb_page::{Document, document, json_element};
 
 use crate::assets::{PAGE, SCRIPTS, STYLES};
 use crate::benchmarks::{self, Benchmark, seconds};
+use crate::copies::Copies;
 use crate::curves::{self, Scenes};
 use crate::history::{self, Run, Verdict};
 use crate::overview::{Overview, Planned, Row};
@@ -56,7 +57,9 @@ pub struct DashboardReport {
     pub benchmarks: usize,
     /// Pages that are linked.
     pub linked: usize,
-    /// Remarks: lines and files that could not be read.
+    /// Size of their copies, with all that they show \[bytes\].
+    pub copied: u64,
+    /// Remarks: lines and files that could not be read, files that are not copied.
     pub remarks: Vec<String>,
 }
 
@@ -79,14 +82,18 @@ struct Data<'a> {
 /// Bytes of pictures that the page carries at most, in all and one by one.
 const PICTURES: (usize, u64) = (12_000_000, 400_000);
 
-/// Writes `index.html` into [`Sources::out`], and `data.json`, which has the same data.
+/// Writes `index.html` into [`Sources::out`], `data.json`, which has the same data, and `pages`, copies
+/// of the pages that it links.
 ///
 /// # Errors
 /// [`DashboardError::Io`] if a history or a folder exists and cannot be read,
-/// [`DashboardError::Film`] if a file cannot be written.
+/// [`DashboardError::Film`] if a file cannot be written, [`DashboardError::Occupied`] if there is a
+/// folder `pages` that is not ours.
 pub fn write(sources: &Sources) -> Result<DashboardReport, DashboardError> {
     fs::create_dir_all(&sources.out).map_err(|e| DashboardError::io(&sources.out, e))?;
-    let data = gather(sources)?;
+    let mut copies = Copies::new(&sources.out)?;
+    let data = gather(sources, &mut copies)?;
+    let copied = copies.finish()?;
     let html = document(&Document {
         template: PAGE,
         title: "Dashboard: transient photon beams",
@@ -98,10 +105,10 @@ pub fn write(sources: &Sources) -> Result<DashboardReport, DashboardError> {
     atomic_write(&page, |file| file.write_all(html.as_bytes()))?;
     let json = serde_json::to_string(&data)?;
     atomic_write(&sources.out.join("data.json"), |file| file.write_all(json.as_bytes()))?;
-    Ok(report(&data, page, html.len()))
+    Ok(report(&data, page, html.len(), copied))
 }
 
-fn gather(sources: &Sources) -> Result<Data<'_>, DashboardError> {
+fn gather<'a>(sources: &'a Sources, copies: &mut Copies) -> Result<Data<'a>, DashboardError> {
     let mut remarks = Vec::new();
     let runs: Vec<Run> = history::merge(all(&sources.histories, &mut remarks)?);
     let benchmarks = benchmarks::merge(all::<Benchmark>(&sources.benchmarks, &mut remarks)?);
@@ -109,6 +116,9 @@ fn gather(sources: &Sources) -> Result<Data<'_>, DashboardError> {
     let pictures = pictures(&overview.rows, &sources.root);
     let error_time = curves::read(&sources.error_time)?;
     remarks.extend(error_time.unread.iter().cloned());
+    let shelves = sources.shelves.iter().map(|shelf| shelves::fill(shelf, copies));
+    let shelves = shelves.collect::<Result<_, _>>()?;
+    remarks.append(&mut copies.remarks);
     Ok(Data {
         program: format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION")),
         time: seconds(SystemTime::now()),
@@ -118,7 +128,7 @@ fn gather(sources: &Sources) -> Result<Data<'_>, DashboardError> {
         pictures,
         error_time,
         benchmarks,
-        shelves: sources.shelves.iter().map(|shelf| shelves::fill(shelf, &sources.out)).collect(),
+        shelves,
         remarks,
     })
 }
@@ -166,7 +176,7 @@ fn pictures(rows: &[Row], root: &Path) -> BTreeMap<String, Vec<(String, String)>
     found
 }
 
-fn report(data: &Data<'_>, page: PathBuf, bytes: usize) -> DashboardReport {
+fn report(data: &Data<'_>, page: PathBuf, bytes: usize, copied: u64) -> DashboardReport {
     let mut experiments = [0; 3];
     let rows = data.overview.rows.iter();
     for row in rows.flat_map(|row| std::iter::once(row).chain(&row.controls)) {
@@ -183,6 +193,7 @@ fn report(data: &Data<'_>, page: PathBuf, bytes: usize) -> DashboardReport {
         scenes: data.error_time.scenes.len(),
         benchmarks: names.len(),
         linked: data.shelves.iter().map(|shelf| shelf.pages.len()).sum(),
+        copied,
         remarks: data.remarks.clone(),
     }
 }

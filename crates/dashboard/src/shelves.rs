@@ -1,22 +1,24 @@
-//! Pages that other commands write: what is there is linked, what is missing is named with the
-//! command that makes it.
+//! Pages that other commands write: what is there is copied and linked, what is missing is named with
+//! the command that makes it.
 
-use std::fmt::Write;
 use std::fs;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
+use crate::DashboardError;
 use crate::benchmarks::seconds;
+use crate::copies::{Copies, address};
 
 /// Where a command leaves its pages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shelf {
     /// What the pages are, as a heading.
     pub title: String,
-    /// The folder; pages are the HTML files in it and in its folders.
+    /// The folder; pages are the HTML files in it and in its folders. They are copied with what they
+    /// name, as far as it lies in this folder.
     pub folder: PathBuf,
     /// The command that makes them.
     pub command: String,
@@ -35,7 +37,7 @@ pub(crate) struct Filled {
 pub(crate) struct Found {
     /// Its own title, or the folder's name.
     pub(crate) title: String,
-    /// Its address, relative to the dashboard's.
+    /// The address of its copy, relative to the dashboard's.
     pub(crate) link: String,
     pub(crate) bytes: u64,
     /// Its last change \[s since 1970, UTC\].
@@ -52,17 +54,17 @@ const PICTURE: u64 = 400_000;
 /// the page.
 const PICTURES: [&str; 4] = ["thumbnail.png", "thumbnail.svg", "sequence.png", "steady.png"];
 
-/// Looks for the pages of a shelf; `from` is the folder from which they are linked.
-pub(crate) fn fill(shelf: &Shelf, from: &Path) -> Filled {
+/// Looks for the pages of a shelf, and copies them.
+pub(crate) fn fill(shelf: &Shelf, copies: &mut Copies) -> Result<Filled, DashboardError> {
     let mut files = pages(&shelf.folder);
     for folder in entries(&shelf.folder).into_iter().filter(|path| path.is_dir()) {
         files.extend(pages(&folder));
     }
-    Filled {
-        title: shelf.title.clone(),
-        command: shelf.command.clone(),
-        pages: files.iter().filter_map(|file| page(file, from)).collect(),
+    let mut found = Vec::with_capacity(files.len());
+    for file in &files {
+        found.push(page(file, address(&copies.add(file, &shelf.folder)?)));
     }
+    Ok(Filled { title: shelf.title.clone(), command: shelf.command.clone(), pages: found })
 }
 
 /// What is in a folder, by name; nothing if it cannot be read.
@@ -85,17 +87,20 @@ fn is_index(file: &Path) -> bool {
     file.file_name().is_some_and(|name| name == "index.html")
 }
 
-fn page(file: &Path, from: &Path) -> Option<Found> {
-    let about = file.metadata().ok()?;
-    let folder = if is_index(file) { file.parent()?.to_owned() } else { file.with_extension("") };
+fn page(file: &Path, link: String) -> Found {
+    let about = file.metadata().ok();
+    let folder = match file.parent() {
+        Some(folder) if is_index(file) => folder.to_owned(),
+        _ => file.with_extension(""),
+    };
     let name = folder.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    Some(Found {
+    Found {
         title: title(file).unwrap_or(name),
-        link: relative(file, from)?,
-        bytes: about.len(),
-        time: about.modified().map_or(0, seconds),
+        link,
+        bytes: about.as_ref().map_or(0, |about| about.len()),
+        time: about.and_then(|about| about.modified().ok()).map_or(0, seconds),
         picture: PICTURES.iter().find_map(|name| picture(&folder.join(name), PICTURE)),
-    })
+    }
 }
 
 /// The title that a page gives itself.
@@ -125,32 +130,6 @@ pub(crate) fn picture(file: &Path, most: u64) -> Option<String> {
     Some(format!("data:{kind};base64,{}", STANDARD.encode(fs::read(file).ok()?)))
 }
 
-/// The address of a file relative to a folder; both exist.
-pub(crate) fn relative(file: &Path, from: &Path) -> Option<String> {
-    let (file, from) = (file.canonicalize().ok()?, from.canonicalize().ok()?);
-    let shared = file.components().zip(from.components()).take_while(|(a, b)| a == b).count();
-    let up = from.components().skip(shared).map(|_| "..".to_owned());
-    let down = file.components().skip(shared).map(|part| match part {
-        Component::Normal(name) => encode(&name.to_string_lossy()),
-        other => encode(&other.as_os_str().to_string_lossy()),
-    });
-    Some(up.chain(down).collect::<Vec<_>>().join("/"))
-}
-
-/// A part of a path as it stands in an address.
-fn encode(part: &str) -> String {
-    let mut out = String::with_capacity(part.len());
-    for byte in part.bytes() {
-        if byte.is_ascii_alphanumeric() || b"-_.~".contains(&byte) {
-            out.push(char::from(byte));
-        } else {
-            // Writing to a text cannot fail.
-            let _ = write!(out, "%{byte:02X}");
-        }
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -159,14 +138,20 @@ mod tests {
     fn pages_are_found_with_title_and_address() {
         let folder = tempfile::tempdir().unwrap();
         let shelf = folder.path().join("reproduce");
-        let from = folder.path().join("dashboard/deep");
-        fs::create_dir_all(&from).unwrap();
+        let out = folder.path().join("dashboard/deep");
+        fs::create_dir_all(&out).unwrap();
+        let filled = |shelf: &Shelf| {
+            let mut copies = Copies::new(&out).unwrap();
+            let filled = fill(shelf, &mut copies).unwrap();
+            copies.finish().unwrap();
+            filled
+        };
         let shelf_of = |folder: &Path| Shelf {
             title: "Scenes".into(),
             folder: folder.to_owned(),
             command: "make".into(),
         };
-        assert_eq!(fill(&shelf_of(&shelf), &from).pages, []);
+        assert_eq!(filled(&shelf_of(&shelf)).pages, []);
         for (name, text) in [("b, 100 %", "<title>A &lt;b&gt; &amp; c </title>"), ("a", "no title")]
         {
             fs::create_dir_all(shelf.join(name)).unwrap();
@@ -179,14 +164,14 @@ mod tests {
         fs::write(shelf.join("table.md"), "").unwrap();
         fs::write(shelf.join("a/thumbnail.png"), "png").unwrap();
         fs::write(shelf.join("empty/steady.png"), "png").unwrap();
-        let pages = fill(&shelf_of(&shelf), &from).pages;
+        let pages = filled(&shelf_of(&shelf)).pages;
         let told: Vec<_> = pages.iter().map(|p| (p.title.as_str(), p.link.as_str())).collect();
         let expected = [
-            ("All", "../../reproduce/index.html"),
-            ("empty", "../../reproduce/empty.html"),
-            ("a", "../../reproduce/a/index.html"),
-            ("V", "../../reproduce/a/viewer.html"),
-            ("A <b> & c", "../../reproduce/b%2C%20100%20%25/index.html"),
+            ("All", "pages/reproduce/index.html"),
+            ("empty", "pages/reproduce/empty.html"),
+            ("a", "pages/reproduce/a/index.html"),
+            ("V", "pages/reproduce/a/viewer.html"),
+            ("A <b> & c", "pages/reproduce/b%2C%20100%20%25/index.html"),
         ];
         assert_eq!(told, expected);
         let pictures: Vec<_> = pages.iter().map(|page| page.picture.as_deref()).collect();

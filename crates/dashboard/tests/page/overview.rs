@@ -1,5 +1,8 @@
 //! The table of experiments says what the histories say.
 
+use tpb_browser::testing::with_file;
+use tpb_dashboard::write;
+
 use crate::workshop::Workshop;
 use crate::{ask, text, with_page};
 
@@ -208,7 +211,7 @@ fn what_is_missing_comes_with_the_command_that_makes_it() {
 }
 
 #[test]
-fn pages_that_are_there_are_linked() {
+fn pages_that_are_there_are_copied_and_linked() {
     let workshop = Workshop::full();
     with_page(&workshop, |page| {
         ask(page, "document.getElementById('tab-pages').click()");
@@ -217,8 +220,8 @@ fn pages_that_are_there_are_linked() {
             "[...document.querySelectorAll('#shelves a')].map((a) => [a.innerText, a.getAttribute('href')])",
         );
         let expected = serde_json::json!([
-            ["All & more", "../reproduce/index.html"],
-            ["The box", "../reproduce/box/index.html"]
+            ["All & more", "pages/reproduce/index.html"],
+            ["The box", "pages/reproduce/box/index.html"]
         ]);
         assert_eq!(links, expected);
         let target = ask(
@@ -228,7 +231,35 @@ fn pages_that_are_there_are_linked() {
         let target = std::path::PathBuf::from(target.as_str().unwrap());
         assert_eq!(
             target,
-            workshop.root().canonicalize().unwrap().join("reproduce/box/index.html")
+            workshop
+                .root()
+                .canonicalize()
+                .unwrap()
+                .join("dashboard/pages/reproduce/box/index.html")
         );
+    });
+}
+
+/// Regression: pages were links out of the folder, dead wherever else it was taken.
+#[test]
+fn the_folder_can_be_taken_elsewhere() {
+    let workshop = Workshop::full();
+    let report = write(&workshop.sources()).unwrap();
+    assert!(report.copied > 0 && report.linked == 2);
+    let elsewhere = tempfile::tempdir().unwrap();
+    let moved = elsewhere.path().join("sent, by post");
+    std::fs::rename(workshop.root().join("dashboard"), &moved).unwrap();
+    drop(workshop);
+    with_file(&moved.join("index.html"), "window.tpbDashboard", |page| {
+        ask(page, "document.getElementById('tab-pages').click()");
+        let links = "[...document.querySelectorAll('#shelves a')].map((a) => new URL(a.href).pathname)\
+                     .map(decodeURIComponent)";
+        let links = ask(page, links);
+        let links = links.as_array().unwrap();
+        assert_eq!(links.len(), 2);
+        for link in links {
+            let file = std::path::Path::new(link.as_str().unwrap());
+            assert!(file.starts_with(moved.canonicalize().unwrap()) && file.is_file(), "{file:?}");
+        }
     });
 }
