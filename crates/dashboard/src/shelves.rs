@@ -97,7 +97,7 @@ fn page(file: &Path, link: String) -> Found {
     Found {
         title: title(file).unwrap_or(name),
         link,
-        bytes: about.as_ref().map_or(0, |about| about.len()),
+        bytes: about.as_ref().map_or(0, fs::Metadata::len),
         time: about.and_then(|about| about.modified().ok()).map_or(0, seconds),
         picture: PICTURES.iter().find_map(|name| picture(&folder.join(name), PICTURE)),
     }

@@ -1,7 +1,8 @@
 //! The arrays that leave the film.
 //!
 //! Cells are f32, (row, column, bin, channel) with row 0 at the top; images beside them are f64
-//! (row, column, channel), so that bins + before + after = steady holds to the rounding of f32.
+//! (row, column, channel), so that bins + before + after = steady holds to the rounding of f32. Rows,
+//! columns and bins count from 0, here and in all that names them.
 
 use std::fmt;
 use std::ops::Range;

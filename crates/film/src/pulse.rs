@@ -34,6 +34,10 @@ use tpb_optics::opl::opl_from_seconds;
 
 use crate::{Arrays, FilmError, Quantity};
 
+/// Edges of equal bins are where they should be, to this part of a bin: those of other programs are
+/// rounded to 32 bits.
+const EDGE_TOLERANCE: f64 = 1e-3;
+
 /// Beyond this many σ a Gaussian holds less than 1e-16 of its energy.
 const GAUSSIAN_SUPPORT: f64 = 8.5;
 
@@ -190,8 +194,8 @@ impl Arrays {
     /// is dropped unless the pulse is a delta: bins of a pass are not independent.
     ///
     /// # Errors
-    /// [`FilmError::Pulse`] for impossible parameters, [`FilmError::Unsuitable`] without bins or
-    /// after [`Pulse::Continuous`].
+    /// [`FilmError::Pulse`] for impossible parameters, and for a Gaussian or a box on bins of
+    /// different widths; [`FilmError::Unsuitable`] without bins or after [`Pulse::Continuous`].
     pub fn apply_pulse(&mut self, pulse: Pulse) -> Result<PulseReport, FilmError> {
         pulse.check()?;
         if self.bins == 0 {
@@ -199,6 +203,9 @@ impl Arrays {
         }
         if self.quantity != Quantity::BinEnergy {
             return Err(FilmError::Unsuitable("a pulse needs energies per bin, not radiance"));
+        }
+        if !matches!(pulse, Pulse::Delta | Pulse::Continuous) {
+            self.need_equal_bins()?;
         }
         let bin_width = (self.opl_edges[self.bins] - self.opl_edges[0]) / self.bins as f64;
         let (kernel, variation) = match pulse {
@@ -223,6 +230,25 @@ impl Arrays {
             guard_bins_end: kernel.back.min(self.bins),
             relative_error_bound: (0.5 * variation).min(2.0),
         })
+    }
+
+    /// That one kernel holds for all bins.
+    fn need_equal_bins(&self) -> Result<(), FilmError> {
+        let edges = &self.opl_edges;
+        let width = (edges[self.bins] - edges[0]) / self.bins as f64;
+        let even = |(k, edge): (usize, &f64)| {
+            (edge - edges[0] - k as f64 * width).abs() <= EDGE_TOLERANCE * width
+        };
+        if edges.iter().enumerate().all(even) {
+            return Ok(());
+        }
+        let widths = edges.windows(2).map(|pair| pair[1] - pair[0]);
+        let (least, most) =
+            widths.fold((f64::INFINITY, 0.0_f64), |(least, most), w| (least.min(w), most.max(w)));
+        Err(FilmError::Pulse(format!(
+            "a Gaussian or a box needs bins of one width; these are {least:.3e} m to {most:.3e} m wide \
+             (a continuous pulse needs no such thing)"
+        )))
     }
 
     fn switch_on(&mut self) {

@@ -11,7 +11,7 @@
 //! * filmic: `x (2.51 x + 0.03)/(x (2.43 x + 0.59) + 0.14)` per channel, the fit to the ACES curve
 //!   by Narkowicz (2015): deeper shadows, brighter middle, highlights that roll off up to x = 7.2.
 //!
-//! Then the sRGB curve (IEC 61966-2-1).
+//! Then the sRGB curve (IEC 61966-2-1). Videos and the viewer's pages draw the same curves.
 
 use serde::{Deserialize, Serialize};
 use tpb_optics::Spectrum;

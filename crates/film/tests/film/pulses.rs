@@ -40,6 +40,28 @@ fn pulses_keep_the_energy() {
     }
 }
 
+/// Regression: bins of different widths, as cubes of other programs may have them, were spread by the
+/// kernel of their mean width.
+#[test]
+fn uneven_bins_are_refused_unless_the_pulse_is_continuous() {
+    let duration = seconds_from_opl(0.5);
+    let spreading = [Pulse::Gaussian { sigma_s: duration }, Pulse::Box { width_s: duration }];
+    let mut uneven = small_cube();
+    let bins = uneven.bins;
+    uneven.opl_edges[bins / 2] += 0.02;
+    let mut rounded = small_cube();
+    rounded.opl_edges.iter_mut().for_each(|edge| *edge = f64::from(*edge as f32));
+    for pulse in spreading {
+        let before = uneven.clone();
+        let message = uneven.apply_pulse(pulse).unwrap_err().to_string();
+        assert!(message.contains("bins of one width") && message.contains("1.800e-1"), "{message}");
+        assert!(uneven == before, "nothing was done");
+        rounded.clone().apply_pulse(pulse).unwrap();
+    }
+    uneven.clone().apply_pulse(Pulse::Continuous).unwrap();
+    uneven.apply_pulse(Pulse::Delta).unwrap();
+}
+
 /// Regression: the weights of a box cancelled; of 1e-15 bins it made 4 % of energy, of 1e-30 it moved
 /// all of it behind the window.
 #[test]
