@@ -30,21 +30,34 @@ impl Factors {
 
     /// Cells that become one.
     pub(crate) fn cells(self) -> usize {
-        self.pixels * self.pixels * self.bins
+        self.pixels.saturating_mul(self.pixels).saturating_mul(self.bins)
     }
 
     /// All that make sense for a shape, the gentlest first: no axis is reduced by more than is
-    /// needed, and pixels, which are looked at, are spared more than bins.
+    /// needed, and pixels, which are looked at, are spared more than bins; what an axis without
+    /// more to give leaves, the other takes. A few thousand at most, whatever the shape.
     pub(crate) fn all(arrays: &Arrays) -> Vec<Self> {
         let longest = arrays.width.max(arrays.height);
-        let mut all: Vec<Self> = (1..=longest)
-            .flat_map(|pixels| (1..=arrays.bins.max(1)).map(move |bins| Self { pixels, bins }))
-            .filter(|f| arrays.bins < 2 || f.pixels.max(f.bins) <= 4 * f.pixels.min(f.bins))
+        let all_bins = arrays.bins.max(1);
+        let balanced = |f: &Self| {
+            let (least, most) = (f.pixels.min(f.bins), f.pixels.max(f.bins));
+            let spent = |factor: usize, end: usize| factor == least && factor == end;
+            most <= 4 * least || spent(f.pixels, longest) || spent(f.bins, all_bins)
+        };
+        let mut all: Vec<Self> = steps(longest)
+            .into_iter()
+            .flat_map(|pixels| steps(all_bins).into_iter().map(move |bins| Self { pixels, bins }))
+            .filter(balanced)
             .collect();
-        all.push(Self { pixels: longest, bins: arrays.bins.max(1) });
         all.sort_by_key(|f| ((3 * f.pixels).max(2 * f.bins), f.cells()));
         all
     }
+}
+
+/// Factors from 1 up to `end`: all small ones, then each an eighth larger than the one before.
+fn steps(end: usize) -> Vec<usize> {
+    let next = |&factor: &usize| (factor < end).then(|| (factor + (factor / 8).max(1)).min(end));
+    std::iter::successors(Some(1), next).collect()
 }
 
 /// What is known of the errors of neighbouring pixels.
@@ -300,5 +313,37 @@ mod tests {
         let first: Vec<_> = all.iter().take(4).map(|f| (f.pixels, f.bins)).collect();
         assert_eq!(first, [(1, 1), (1, 2), (1, 3), (2, 1)]);
         assert_eq!(all.last().map(|f| (f.pixels, f.bins)), Some((16, 20)));
+    }
+
+    fn of_shape(width: usize, height: usize, bins: usize) -> Vec<(usize, usize)> {
+        let mut arrays = cube(1, 1, 1, 1);
+        (arrays.width, arrays.height, arrays.bins) = (width, height, bins);
+        Factors::all(&arrays).iter().map(|f| (f.pixels, f.bins)).collect()
+    }
+
+    /// Regression: a single pixel went from groups of 4 bins straight to all of them.
+    #[test]
+    fn an_axis_is_reduced_step_by_step_where_the_other_is_used_up() {
+        let gentle =
+            |steps: &[usize]| steps.windows(2).all(|s| s[1] <= (s[0] + 1).max(s[0] * 9 / 8));
+        let bins: Vec<usize> = of_shape(1, 1, 5000).into_iter().map(|f| f.1).collect();
+        assert!(gentle(&bins) && bins.last() == Some(&5000), "{bins:?}");
+        let pixels: Vec<usize> = of_shape(900, 2, 0).into_iter().map(|f| f.0).collect();
+        assert!(gentle(&pixels) && pixels.last() == Some(&900), "{pixels:?}");
+        let wide: Vec<usize> =
+            of_shape(900, 2, 2).into_iter().filter(|f| f.1 == 2).map(|f| f.0).collect();
+        assert!(gentle(&wide) && wide.last() == Some(&900), "{wide:?}");
+        assert!(!of_shape(64, 64, 100).contains(&(1, 100)), "no axis alone");
+    }
+
+    /// Regression: long thin cubes made as many candidates as they have cells.
+    #[test]
+    fn candidates_are_few_whatever_the_shape() {
+        for (width, bins) in [(100_000, 50_000), (1, 1 << 40), (1 << 30, 1 << 30)] {
+            let all = of_shape(width, 1, bins);
+            assert!(all.len() < 10_000, "{width} x {bins}: {}", all.len());
+            assert_eq!(all.first(), Some(&(1, 1)));
+            assert!(all.contains(&(width, bins)), "down to one cell");
+        }
     }
 }
