@@ -2,7 +2,7 @@
 
 use tpb_film::Arrays;
 
-use crate::{PixelErrors, ViewerError};
+use crate::{Estimate, PixelErrors, ViewerError};
 
 /// Bytes of a page unless another budget is set: 20 MB.
 pub const DEFAULT_BUDGET: usize = 20_000_000;
@@ -23,6 +23,12 @@ pub struct Method<'a> {
     pub is_reference: bool,
     /// What is known of the errors of neighbouring pixels: how wide intervals of reduced cubes are.
     pub pixel_errors: PixelErrors,
+    /// From how many independent batches (passes, replicates) the variance was estimated: intervals
+    /// are by Student's t. `None`: not known; then they are as for very many, and the page says so.
+    pub batches: Option<u64>,
+    /// Whether its errors are independent of the reference's. `false` if both were rendered from
+    /// the same random numbers: then noise cannot be told from bias, and those numbers are left out.
+    pub independent: bool,
     /// A sentence about it; may be empty.
     pub caption: String,
     /// How it was made, as pairs of name and value, in the order in which they are shown.
@@ -40,10 +46,17 @@ impl<'a> Method<'a> {
             arrays,
             is_reference: false,
             pixel_errors: PixelErrors::default(),
+            batches: None,
+            independent: true,
             caption: String::new(),
             provenance: Vec::new(),
             command: None,
         }
+    }
+
+    /// Its arrays with the number of their batches.
+    pub(crate) fn estimate(&self) -> Estimate<'a> {
+        Estimate { arrays: self.arrays, batches: self.batches }
     }
 }
 
@@ -65,7 +78,7 @@ pub struct Comparison<'a> {
     pub judged_label: String,
     /// The most that the page may take \[bytes\]; cubes are reduced until they fit.
     pub budget_bytes: usize,
-    /// Remarks shown with the error numbers.
+    /// Remarks, shown as a list.
     pub notes: Vec<String>,
 }
 

@@ -9,6 +9,8 @@
 //! | --- | --- |
 //! | [`comparison`](Comparison) | what is compared |
 //! | [`metrics`](Metrics) | error numbers against the reference |
+//! | [`ruling`](Ruling) | whether a few pixels rule them |
+//! | [`interval`](Estimate) | 95 % intervals from few batches |
 //! | `reduce` | exact box means over pixels, sums over bins |
 //! | `pack` | logarithmic codes, prediction, deflate |
 //! | `page` | the budget, the manifest, the HTML |
@@ -32,27 +34,34 @@
 //! ```
 //!
 //! A link may say what is shown first: `page.html#method=path&view=error&bin=40&pixel=12,30`, also
-//! `exposure` (stops) and `theme`; views are `frame`, `steady`, `xt`, `yt`, `arrival`, `mean`, `peak`,
-//! `error`, `steady-error`, `before`, `after`.
+//! `exposure` (stops), `curve` and `theme`; views are `frame`, `steady`, `xt`, `yt`, `arrival`, `mean`,
+//! `peak`, `error`, `steady-error`, `before`, `after`.
+//!
+//! Bins, columns and rows count from 0, as in the arrays, in links, labels and everything that the
+//! page says; they are those of the results, also where the cubes of the page are reduced.
 //!
 //! Not handled: results of different shapes or time axes; progressive loading of large pages.
 
 mod assets;
 mod comparison;
 mod error;
+mod interval;
 mod load;
 mod manifest;
 mod metrics;
 mod pack;
 mod page;
 mod reduce;
+mod ruling;
 #[cfg(test)]
 mod testing;
 
 pub use comparison::{Comparison, DEFAULT_BUDGET, Method};
 pub use error::ViewerError;
-pub use load::{Loaded, bring_together, load};
+pub use interval::Estimate;
+pub use load::{Loaded, bring_together, load, load_mask};
 pub use metrics::{FrameCurves, Half, Metrics};
 pub use pack::{SE_ERROR, VALUE_ERROR};
 pub use page::{PageReport, page, write_comparison};
 pub use reduce::{Factors, PixelErrors, reduce};
+pub use ruling::Ruling;

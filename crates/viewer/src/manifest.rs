@@ -4,7 +4,8 @@ use serde::Serialize;
 use tpb_film::{Arrays, Quantity};
 
 use crate::comparison::{Comparison, Method};
-use crate::metrics::{EPSILON, FrameCurves, INTERVAL, Metrics};
+use crate::interval::standard_errors;
+use crate::metrics::{EPSILON, FrameCurves, Metrics};
 use crate::pack::{PackedMethod, Prediction, Stream, code};
 use crate::reduce::Factors;
 
@@ -28,7 +29,6 @@ pub(crate) struct Manifest<'a> {
     rendered_edges: Option<&'a [f64]>,
     code: Code,
     epsilon: f64,
-    interval: f64,
     judged_label: Option<&'a str>,
     notes: &'a [String],
     methods: Vec<MethodEntry<'a>>,
@@ -64,6 +64,12 @@ struct MethodEntry<'a> {
     key: &'a str,
     label: &'a str,
     reference: bool,
+    /// Of its variance, if known.
+    batches: Option<u64>,
+    /// Standard errors on each side of a 95 % interval.
+    interval: Option<f64>,
+    /// Whether its errors are independent of the reference's.
+    independent: bool,
     caption: &'a str,
     command: Option<&'a str>,
     provenance: &'a [(String, String)],
@@ -119,18 +125,20 @@ pub(crate) struct Judgement {
 
 impl Judgement {
     pub(crate) fn new(comparison: &Comparison<'_>, method: &Method<'_>) -> Self {
-        let reference = comparison.reference().map(|reference| reference.arrays);
+        let reference = comparison.reference().filter(|_| !method.is_reference);
         let judged = comparison.judged.as_deref();
         let x = method.arrays;
-        let numbers = reference.filter(|_| !method.is_reference).map(|r| Numbers {
-            cube: (x.bins > 0).then(|| Metrics::of_cube(x, r, None)),
-            steady: Metrics::of_steady(x, r, None),
-            judged_cube: judged
-                .filter(|_| x.bins > 0)
-                .map(|judged| Metrics::of_cube(x, r, Some(judged))),
-            judged_steady: judged.map(|judged| Metrics::of_steady(x, r, Some(judged))),
+        let of_cube = |r: &Method<'_>, judged| {
+            let metrics = Metrics::of_cube(method.estimate(), r.estimate(), judged);
+            if method.independent { metrics } else { metrics.without_noise() }
+        };
+        let numbers = reference.map(|r| Numbers {
+            cube: (x.bins > 0).then(|| of_cube(r, None)),
+            steady: Metrics::of_steady(x, r.arrays, None),
+            judged_cube: judged.filter(|_| x.bins > 0).map(|judged| of_cube(r, Some(judged))),
+            judged_steady: judged.map(|judged| Metrics::of_steady(x, r.arrays, Some(judged))),
         });
-        let frames = FrameCurves::new(x, reference.filter(|_| !method.is_reference));
+        let frames = FrameCurves::new(x, reference.map(|reference| reference.arrays));
         Self { numbers, frames }
     }
 }
@@ -174,6 +182,9 @@ pub(crate) fn manifest<'a>(
             key: &method.key,
             label: &method.label,
             reference: method.is_reference,
+            batches: method.batches,
+            interval: standard_errors(method.estimate().freedom()),
+            independent: method.independent,
             caption: &method.caption,
             command: method.command.as_deref(),
             provenance: &method.provenance,
@@ -206,7 +217,6 @@ pub(crate) fn manifest<'a>(
             error_offset: code::ERROR_OFFSET,
         },
         epsilon: EPSILON,
-        interval: INTERVAL,
         judged_label: comparison.judged.as_ref().map(|_| comparison.judged_label.as_str()),
         notes: &comparison.notes,
         methods,

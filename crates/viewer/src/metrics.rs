@@ -15,8 +15,10 @@
 //! Where the variance v of x is known, NMSE splits into what noise is expected to make of it,
 //! Σ(v_x + v_r)/Σr², and the rest, an unbiased estimate of the squared bias (the errors of x and r
 //! being independent). This needs nothing about correlations between cells; a reference without
-//! variance counts as exact. The bias has an interval of ±1.96 standard errors, in two forms: cells
-//! independent, √Σv, and the widest possible, Σ√v, of cells that move together.
+//! variance counts as exact. The bias has a 95 % interval by Student's t ([`crate::interval`]), in two
+//! forms: with the standard error of independent cells, √Σ(v_x + v_r), and with the widest possible,
+//! √((Σ√v_x)² + (Σ√v_r)²), of cells that move together within x and within r. Where x and r share
+//! random numbers, noise and intervals do not exist: [`Metrics::without_noise`].
 //!
 //! Cells that are not finite in x or r are left out and counted.
 
@@ -24,11 +26,10 @@ use rayon::prelude::*;
 use serde::Serialize;
 use tpb_film::Arrays;
 
+use crate::interval::{Estimate, Sum};
+
 /// Part of the mean of |r| that keeps relative errors finite.
 pub(crate) const EPSILON: f64 = 1e-2;
-
-/// Standard errors on each side of a 95 % interval.
-pub(crate) const INTERVAL: f64 = 1.96;
 
 /// Half the width of a 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -93,16 +94,37 @@ struct Sums {
     relative_squares: f64,
     relative: f64,
     symmetric: f64,
-    variance: f64,
-    deviation: f64,
+    variances: [Variances; 2],
 }
 
-/// One cell: result, reference, variance of both.
+/// Sums of the variances of a result, or of the reference.
+#[derive(Clone, Copy, Debug, Default)]
+struct Variances {
+    sum: f64,
+    squares: f64,
+    deviations: f64,
+}
+
+impl Variances {
+    fn add(&mut self, variance: f64) {
+        self.sum += variance;
+        self.squares += variance * variance;
+        self.deviations += variance.sqrt();
+    }
+
+    fn merge(&mut self, other: &Self) {
+        self.sum += other.sum;
+        self.squares += other.squares;
+        self.deviations += other.deviations;
+    }
+}
+
+/// One cell: result, reference, variances of both.
 #[derive(Clone, Copy)]
 struct Pair {
     x: f64,
     r: f64,
-    variance: f64,
+    variances: [f64; 2],
 }
 
 impl Sums {
@@ -114,7 +136,7 @@ impl Sums {
         }
     }
 
-    fn add(&mut self, Pair { x, r, variance }: Pair, epsilon: f64) {
+    fn add(&mut self, Pair { x, r, variances }: Pair, epsilon: f64) {
         if !(x.is_finite() && r.is_finite()) {
             self.left_out += 1;
             return;
@@ -125,8 +147,9 @@ impl Sums {
         self.r += r;
         self.squares_of_r += r * r;
         self.squares += d * d;
-        self.variance += variance;
-        self.deviation += variance.sqrt();
+        for (sums, variance) in self.variances.iter_mut().zip(variances) {
+            sums.add(variance);
+        }
         // A black reference has no ε: 0/0 of black cells counts as no error.
         if d != 0.0 {
             self.relative_squares += d * d / (r * r + epsilon * epsilon);
@@ -147,19 +170,20 @@ impl Sums {
         self.relative_squares += other.relative_squares;
         self.relative += other.relative;
         self.symmetric += other.symmetric;
-        self.variance += other.variance;
-        self.deviation += other.deviation;
+        for (sums, others) in self.variances.iter_mut().zip(&other.variances) {
+            sums.merge(others);
+        }
         self
     }
 
-    fn metrics(&self, epsilon: f64, variance_known: bool) -> Metrics {
+    /// With the degrees of freedom of both variances, if that of x is known.
+    fn metrics(&self, epsilon: f64, freedoms: Option<[f64; 2]>) -> Metrics {
         let ratio = |a: f64, b: f64| Some(a / b).filter(|value| value.is_finite());
         let n = self.cells as f64;
         let nmse = ratio(self.squares, self.squares_of_r);
-        let noise = ratio(self.variance, self.squares_of_r).filter(|_| variance_known);
+        let variance = self.variances.iter().map(|variances| variances.sum).sum();
+        let noise = freedoms.and_then(|_| ratio(variance, self.squares_of_r));
         let mean = |sum: f64| ratio(sum, n).filter(|_| epsilon > 0.0);
-        let half = |error: f64| ratio(INTERVAL * error, self.r.abs());
-        let halves = half(self.variance.sqrt()).zip(half(self.deviation));
         Metrics {
             cells: self.cells,
             left_out: self.left_out,
@@ -172,10 +196,25 @@ impl Sums {
             mape: mean(self.relative),
             smape: mean(self.symmetric),
             bias: ratio(self.x - self.r, self.r),
-            bias_half: halves
-                .filter(|_| variance_known)
-                .map(|(independent, bound)| Half { independent, bound }),
+            bias_half: freedoms.and_then(|freedoms| {
+                let (independent, bound) = self.half_widths(freedoms)?;
+                let relative = |half: f64| ratio(half, self.r.abs());
+                Some(Half { independent: relative(independent)?, bound: relative(bound)? })
+            }),
         }
+    }
+
+    /// Half widths of the intervals of Σd: cells independent, and at most.
+    fn half_widths(&self, freedoms: [f64; 2]) -> Option<(f64, f64)> {
+        let (mut independent, mut bound) = (Sum::default(), Sum::default());
+        for (variances, freedom) in self.variances.iter().zip(freedoms) {
+            independent = independent.and(variances.sum, variances.squares, freedom);
+            let together = variances.deviations * variances.deviations;
+            bound = bound.and(together, together * together, freedom);
+        }
+        // A sum of many cells has more freedom than any of them; the bound holds for all that.
+        let bound = bound.half()?;
+        Some((independent.half()?.min(bound), bound))
     }
 }
 
@@ -207,7 +246,7 @@ fn measure(
     judged: Option<&[bool]>,
     size: usize,
     pair: impl Fn(usize) -> Pair + Sync,
-    variance_known: bool,
+    freedoms: Option<[f64; 2]>,
 ) -> Metrics {
     let cells = |pixel: usize| pixel * size..(pixel + 1) * size;
     let scale = over_pixels(x.pixels(), judged, |sums, pixel| {
@@ -217,28 +256,41 @@ fn measure(
     let sums = over_pixels(x.pixels(), judged, |sums, pixel| {
         cells(pixel).for_each(|cell| sums.add(pair(cell), epsilon));
     });
-    sums.metrics(epsilon, variance_known)
+    sums.metrics(epsilon, freedoms)
 }
 
 impl Metrics {
     /// Over the bins of the chosen pixels (all if `None`). Both have the same shape
     /// ([`Comparison::check`](crate::Comparison::check)).
-    pub fn of_cube(x: &Arrays, r: &Arrays, judged: Option<&[bool]>) -> Self {
+    pub fn of_cube<'a>(
+        x: impl Into<Estimate<'a>>,
+        r: impl Into<Estimate<'a>>,
+        judged: Option<&[bool]>,
+    ) -> Self {
+        let (x, r) = (x.into(), r.into());
+        let freedoms = x.arrays.variance.is_some().then(|| [x.freedom(), r.freedom()]);
+        let (x, r) = (x.arrays, r.arrays);
         let variance_of = |arrays: &Arrays, cell: usize| {
             arrays.variance.as_ref().map_or(0.0, |variance| f64::from(variance[cell]))
         };
         let pair = |cell: usize| Pair {
             x: f64::from(x.transient[cell]),
             r: f64::from(r.transient[cell]),
-            variance: variance_of(x, cell) + variance_of(r, cell),
+            variances: [variance_of(x, cell), variance_of(r, cell)],
         };
-        measure(x, judged, x.bins * x.channels, pair, x.variance.is_some())
+        measure(x, judged, x.bins * x.channels, pair, freedoms)
     }
 
     /// Over the steady image; its variance is not kept.
     pub fn of_steady(x: &Arrays, r: &Arrays, judged: Option<&[bool]>) -> Self {
-        let pair = |cell: usize| Pair { x: x.steady[cell], r: r.steady[cell], variance: 0.0 };
-        measure(x, judged, x.channels, pair, false)
+        let pair = |cell: usize| Pair { x: x.steady[cell], r: r.steady[cell], variances: [0.0; 2] };
+        measure(x, judged, x.channels, pair, None)
+    }
+
+    /// Without what rests on independent errors of x and r: where they share random numbers.
+    #[must_use]
+    pub fn without_noise(self) -> Self {
+        Self { noise: None, squared_bias: None, bias_half: None, ..self }
     }
 }
 
@@ -247,7 +299,7 @@ impl FrameCurves {
     pub fn new(x: &Arrays, reference: Option<&Arrays>) -> Self {
         let sums = sums_of_bins(x, reference.unwrap_or(x));
         let judged = |value: Option<f64>| value.filter(|_| reference.is_some());
-        let metrics: Vec<Metrics> = sums.iter().map(|sums| sums.metrics(1.0, false)).collect();
+        let metrics: Vec<Metrics> = sums.iter().map(|sums| sums.metrics(1.0, None)).collect();
         Self {
             mean: sums.iter().map(|sums| sums.x / sums.cells.max(1) as f64).collect(),
             nmse: metrics.iter().map(|metrics| judged(metrics.nmse)).collect(),
@@ -268,7 +320,8 @@ fn sums_of_bins(x: &Arrays, r: &Arrays) -> Vec<Sums> {
         .map(|(x_cells, r_cells)| {
             let mut sums = vec![Sums::default(); x.bins];
             for (at, (&x_cell, &r_cell)) in x_cells.iter().zip(r_cells).enumerate() {
-                let pair = Pair { x: f64::from(x_cell), r: f64::from(r_cell), variance: 0.0 };
+                let (value, truth) = (f64::from(x_cell), f64::from(r_cell));
+                let pair = Pair { x: value, r: truth, variances: [0.0; 2] };
                 sums[at % size / x.channels].add(pair, 1.0);
             }
             sums
@@ -279,92 +332,4 @@ fn sums_of_bins(x: &Arrays, r: &Arrays) -> Vec<Sums> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::{cube, with_error};
-
-    #[test]
-    fn numbers_follow_their_formulas() {
-        let mut r = cube(2, 1, 2, 1);
-        r.transient = vec![1.0, 2.0, 0.0, 5.0];
-        let mut x = r.clone();
-        x.transient = vec![1.5, 2.0, 1.0, 3.0];
-        let found = Metrics::of_cube(&x, &r, None);
-        let epsilon = 0.01 * 8.0 / 3.0;
-        let squares = 0.25 + 1.0 + 4.0;
-        let near = |found: Option<f64>, exact: f64| {
-            assert!((found.unwrap() - exact).abs() < 1e-12 * exact.abs(), "{found:?} {exact}");
-        };
-        assert!((found.epsilon - epsilon).abs() < 1e-15);
-        near(found.rmse, (squares / 4.0_f64).sqrt());
-        near(found.nmse, squares / 30.0);
-        near(found.bias, -0.5 / 8.0);
-        near(found.mape, (0.5 / (1.0 + epsilon) + 1.0 / epsilon + 2.0 / (5.0 + epsilon)) / 4.0);
-        let symmetric = 1.0 / (2.5 + epsilon) + 2.0 / (1.0 + epsilon) + 4.0 / (8.0 + epsilon);
-        near(found.smape, symmetric / 4.0);
-        let e2 = epsilon * epsilon;
-        near(found.relative_mse, (0.25 / (1.0 + e2) + 1.0 / e2 + 4.0 / (25.0 + e2)) / 4.0);
-        assert_eq!((found.noise, found.bias_half), (None, None));
-        let steady = Metrics::of_steady(&x, &r, None);
-        assert_eq!(steady.rmse, Some(0.0));
-    }
-
-    #[test]
-    fn noise_is_told_from_bias() {
-        let r = cube(16, 16, 20, 1);
-        let relative = 0.05;
-        let mut x = with_error(r.clone(), relative);
-        // Errors of exactly one standard deviation, alternating, on a bias of 3 %.
-        for (at, cell) in x.transient.iter_mut().enumerate() {
-            *cell *= 1.03 + if at % 2 == 0 { relative } else { -relative };
-        }
-        let found = Metrics::of_cube(&x, &r, None);
-        assert!((found.noise.unwrap() - 2.5e-3).abs() < 1e-8);
-        assert!((found.squared_bias.unwrap() - 9e-4).abs() < 2e-4, "{:?}", found.squared_bias);
-        let half = found.bias_half.unwrap();
-        assert!((half.bound - 1.96 * 0.05).abs() < 1e-6 && half.independent < half.bound / 20.0);
-    }
-
-    #[test]
-    fn what_is_not_finite_is_left_out_and_counted() {
-        let r = cube(4, 4, 5, 3);
-        let mut x = r.clone();
-        x.transient[7] = f32::NAN;
-        x.transient[100] = f32::INFINITY;
-        let found = Metrics::of_cube(&x, &r, None);
-        assert_eq!((found.left_out, found.cells), (2, 4 * 4 * 5 * 3 - 2));
-        assert_eq!(found.nmse, Some(0.0));
-    }
-
-    #[test]
-    fn judged_pixels_are_chosen_and_black_references_have_no_ratios() {
-        let r = cube(3, 1, 4, 1);
-        let mut x = r.clone();
-        x.transient[0] += 1.0;
-        let judged = [false, true, true];
-        assert_eq!(Metrics::of_cube(&x, &r, Some(&judged)).rmse, Some(0.0));
-        assert!(Metrics::of_cube(&x, &r, None).rmse.unwrap() > 0.1);
-        let mut black = r.clone();
-        black.transient.fill(0.0);
-        let found = Metrics::of_cube(&x, &black, None);
-        assert_eq!((found.nmse, found.mape, found.bias), (None, None, None));
-        assert!(found.rmse.is_some());
-    }
-
-    #[test]
-    fn curves_are_the_numbers_of_each_bin() {
-        let r = cube(5, 4, 6, 3);
-        let mut x = r.clone();
-        x.transient.iter_mut().for_each(|cell| *cell *= 1.1);
-        let curves = FrameCurves::new(&x, Some(&r));
-        for bin in 0..6 {
-            let lit = r.transient.chunks_exact(3).skip(bin).step_by(6).any(|cell| cell[0] > 0.0);
-            assert_eq!(curves.nmse[bin].is_some(), lit);
-            if lit {
-                assert!((curves.nmse[bin].unwrap() - 0.01).abs() < 1e-6);
-                assert!((curves.bias[bin].unwrap() - 0.1).abs() < 1e-6);
-            }
-        }
-        assert!(FrameCurves::new(&x, None).nmse.iter().all(Option::is_none));
-    }
-}
+mod tests;

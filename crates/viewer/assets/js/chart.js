@@ -28,7 +28,7 @@ function curveOf(v, cube) {
   const halves = cube.hasErrors ? [] : null;
   for (let bin = 0; bin < v.bins; bin++) {
     values.push(cube.reading(bin, pixel, state.channel));
-    halves?.push(v.manifest.interval * cube.readingError(bin, pixel, state.channel));
+    halves?.push(cube.interval * cube.readingError(bin, pixel, state.channel));
   }
   return { values, halves };
 }
@@ -172,6 +172,15 @@ function redrawTimeLine() {
   chart.plot?.redraw(false, state.chartZoom);
 }
 
+/** How wide the bands are, and from how many batches their standard errors. */
+function bandsOf(v) {
+  return v.cubes.filter((cube) => cube.hasErrors).map(({ entry, interval }) => {
+    if (Number.isNaN(interval)) return `${entry.label} none, from ${entry.batches} batch`;
+    const from = entry.batches === null ? "of an unknown number of batches, taken as many" : `of ${entry.batches} batches`;
+    return `${entry.label} ±${digits(interval)} standard errors ${from}`;
+  }).join("; ");
+}
+
 function describeChart(v, data) {
   const kind = state.chartKind;
   byId("chart-title").textContent = kind === "pixel" ? `Pixel ${v.column(state.x)}, ${v.row(state.y)}` : "All pixels";
@@ -181,7 +190,7 @@ function describeChart(v, data) {
     values.forEach((value, bin) => {
       if (value !== null && (at < 0 || value > values[at])) at = bin;
     });
-    return at < 0 ? `${cube.entry.label}: nothing` : `${cube.entry.label}: largest ${digits(values[at])} at ${v.time.text(chart.edges[at])}`;
+    return at < 0 ? `${cube.entry.label}: nothing` : `${cube.entry.label}: largest ${digits(values[at])} at ${v.timeBetween(chart.edges, at)}`;
   });
   const what = kind === "pixel" ? `Time response of column ${v.column(state.x)}, row ${v.row(state.y)}` : `${CHART_KINDS[kind].label} against time`;
   byId("chart").setAttribute("aria-label", `${what}, ${isLog() ? "logarithmic" : "linear"} axis. ${peaks.join("; ")}.`);
@@ -189,7 +198,7 @@ function describeChart(v, data) {
   if (kind === "pixel") notes.push(v.unit);
   if (kind === "pixel" && v.cubes.some((cube) => cube.hasErrors)) {
     const reduced = v.manifest.factors.some((factor) => factor > 1) || (state.channel === "luminance" && v.channels === 3);
-    notes.push(`bands: 95 %, ±${v.manifest.interval} standard errors${reduced ? " (an upper bound: bins, pixels or channels that were added may err together)" : ""}`);
+    notes.push(`bands: 95 % by Student's t: ${bandsOf(v)}${reduced ? " (an upper bound: bins, pixels or channels that were added may err together)" : ""}`);
   }
   else if (kind === "pixel") notes.push("no bands: these results carry no variance (tpb render --variance keeps it)");
   if (kind !== "pixel") notes.push("over all pixels and channels, at full size");

@@ -40,10 +40,10 @@ function buildControls(v) {
   buttonGroup("views", v.views.map((view) => ({ text: view.label, title: view.hint })), (index) => update({ view: v.views[index].name, hover: null }));
   fillSelect("speed", SPEEDS.map((speed) => [String(speed), `${speed} bins/s`]), "speed");
   fillSelect("channel", v.channels === 3 ? [["luminance", "luminance"], ["0", "red"], ["1", "green"], ["2", "blue"]] : [["luminance", "value"]], "channel");
-  fillSelect("curve", Object.entries(CURVES).map(([name]) => [name, name]), "curve");
+  fillSelect("curve", Object.keys(CURVES).map((name) => [name, name]), "curve");
   const judges = v.reference && v.cubes.length > 1;
   fillSelect("chart-kind", Object.entries(CHART_KINDS).filter(([, kind]) => !kind.judges || judges).map(([name, kind]) => [name, kind.label]), "chartKind");
-  const metrics = Object.entries(METRICS).filter(([name]) => name !== "z" || v.cubes.some((cube) => cube !== v.reference && cube.hasErrors));
+  const metrics = Object.entries(METRICS).filter(([name]) => name !== "z" || v.cubes.some((cube) => cube !== v.reference && cube.hasErrors && cube.entry.independent));
   fillSelect("metric", metrics.map(([name, metric]) => [name, metric.label]), "metric");
   for (const node of document.querySelectorAll(".needs-reference")) node.hidden = !judges;
   byId("channel").hidden = v.channels !== 3;
@@ -72,9 +72,9 @@ function syncControls(v) {
   const time = byId("time");
   time.value = String(state.bin);
   if (v.bins > 0) {
-    const text = `bin ${state.bin + 1} of ${v.bins}, ${v.timeOfBin(state.bin)}`;
-    time.setAttribute("aria-valuetext", text);
-    byId("time-text").textContent = v.manifest.timed ? `${v.timeOfBin(state.bin)} · ${state.bin + 1}/${v.bins}` : `${state.bin + 1}/${v.bins}`;
+    const bin = v.binOfAll(state.bin);
+    time.setAttribute("aria-valuetext", v.manifest.timed ? `${bin}, ${v.timeOfBin(state.bin)}` : bin);
+    byId("time-text").textContent = v.manifest.timed ? `${v.timeOfBin(state.bin)} · ${bin}` : bin;
   }
   byId("play").textContent = state.playing ? "Pause" : "Play";
   byId("exposure").value = String(state.exposure);
@@ -87,7 +87,7 @@ function syncControls(v) {
     byId(id).value = String(state[key]);
   }
   byId("display-note").textContent = v.view.colour
-    ? `0 EV: ${state.follow && v.view.name === "frame" ? "99 % of this frame's lit pixels" : "nearly all lit cells"} of ${v.leader.entry.label} are below white; the same for all methods. Curve ${CURVES[state.curve]}; then sRGB.`
+    ? `0 EV: ${state.follow && v.view.name === "frame" ? "99 % of this frame's lit pixels" : "nearly all lit cells"} of ${v.leader.entry.label} are below white; the same for all methods. Curve ${state.curve}: ${CURVES[state.curve].label}; then sRGB.`
     : v.view.judges ? `ε = ${digits(v.view.name === "error" ? cubeEpsilon(v) : steadyEpsilon(v))} ${v.unit}: 1 % of the mean of the reference's lit ${v.view.name === "error" ? "cells" : "pixels"}. Of luminance.` : "Pixels without light are black.";
 }
 

@@ -31,6 +31,11 @@ class Cube {
     return this.errors.length > 0;
   }
 
+  /** Standard errors on each side of a 95 % interval; NaN if their number of batches allows none. */
+  get interval() {
+    return this.entry.interval ?? NaN;
+  }
+
   /** A cell's value in one channel. */
   value(bin, pixel, channel) {
     return this.values[this.codes[channel][bin * this.pixels + pixel]];

@@ -84,6 +84,8 @@ function frameError(viewer, cube, bin, pixel) {
   const x = cube.reading(bin, pixel, "luminance");
   const r = reference.reading(bin, pixel, "luminance");
   if (state.metric !== "z") return METRICS[state.metric].of(x, r, cubeEpsilon(viewer));
+  // Where both share random numbers, their standard errors do not tell that of the difference.
+  if (!cube.entry.independent) return NaN;
   const s = cube.readingError(bin, pixel, "luminance");
   const sr = reference.hasErrors ? reference.readingError(bin, pixel, "luminance") : 0;
   return (x - r) / Math.sqrt(s * s + sr * sr);

@@ -11,10 +11,10 @@ class TimeUnit {
     const seconds = last / SPEED_OF_LIGHT;
     const units = [["s", 1], ["ms", 1e-3], ["µs", 1e-6], ["ns", 1e-9], ["ps", 1e-12], ["fs", 1e-15]];
     const fits = units.find(([, size]) => seconds >= size) ?? units[units.length - 1];
-    [this.name, this.size] = this.timed ? fits : ["bins", 1];
+    [this.name, this.size] = this.timed ? fits : ["bin", 1];
     // Enough decimals to tell neighbouring bins apart.
     const width = edges.length > 1 ? this.of((edges[edges.length - 1] - edges[0]) / (edges.length - 1)) : 1;
-    this.decimals = this.timed ? Math.min(9, Math.max(0, 1 - Math.floor(Math.log10(Math.abs(width))))) : 0;
+    this.decimals = Math.min(9, Math.max(0, 1 - Math.floor(Math.log10(Math.abs(width)))));
   }
 
   /** OPL in metres (or a number of bins) in this unit. */
@@ -22,7 +22,9 @@ class TimeUnit {
     return this.timed ? opl / SPEED_OF_LIGHT / this.size : opl;
   }
 
+  /** A time; without a unit, the bin that it lies in. */
   text(opl) {
-    return Number.isFinite(opl) ? `${this.of(opl).toFixed(this.decimals)} ${this.name}` : "–";
+    if (!Number.isFinite(opl)) return "–";
+    return this.timed ? `${this.of(opl).toFixed(this.decimals)} ${this.name}` : `bin ${Math.floor(opl)}`;
   }
 }

@@ -23,24 +23,39 @@ class Viewer {
 
   /** The time of a bin: its centre; of radiance, its upper edge. */
   timeOfBin(bin) {
-    if (!this.manifest.timed) return `bin ${bin + 1}`;
-    const [low, high] = [this.edges[bin], this.edges[bin + 1]];
+    return this.manifest.timed ? this.timeBetween(this.edges, bin) : this.bin(bin);
+  }
+
+  /** The same between any edges. */
+  timeBetween(edges, bin) {
+    const [low, high] = [edges[bin], edges[bin + 1]];
+    if (!this.manifest.timed) return this.time.text(low);
     return this.time.text(this.energies ? 0.5 * (low + high) : high);
   }
 
-  /** Columns or rows of the result that a shown one stands for: "7", or "14–15" of a reduced cube. */
-  named(at, end) {
-    const side = this.manifest.factors[0];
+  /** Columns, rows or bins of the result that a shown one stands for, from 0: "7", or "14–15" of a reduced cube. */
+  named(at, side, end) {
     const last = Math.min((at + 1) * side, end) - 1;
     return last > at * side ? `${at * side}–${last}` : String(at * side);
   }
 
   column(x) {
-    return this.named(x, this.manifest.rendered.width);
+    return this.named(x, this.manifest.factors[0], this.manifest.rendered.width);
   }
 
   row(y) {
-    return this.named(y, this.manifest.rendered.height);
+    return this.named(y, this.manifest.factors[0], this.manifest.rendered.height);
+  }
+
+  /** "bin 7", "bins 14–15". */
+  bin(bin) {
+    const name = this.named(bin, this.manifest.factors[1], this.manifest.rendered.bins);
+    return `${name.includes("–") ? "bins" : "bin"} ${name}`;
+  }
+
+  /** A bin among all. */
+  binOfAll(bin) {
+    return `${this.bin(bin)} of 0–${this.manifest.rendered.bins - 1}`;
   }
 
   /** A bin in which much of the image is lit. */
@@ -76,6 +91,7 @@ function drawAll(v) {
   drawReadout(v);
   drawChart(v);
   drawNumbers(v);
+  drawNotes(v);
   drawProvenance(v);
   drawPacking(v);
 }

@@ -21,7 +21,7 @@ function cellTexts(v, cube, cell) {
   view.read(v, cube, cell.x, cell.y, out);
   const parts = out.slice(0, cube.channels).map((value) => (Number.isNaN(value) ? "not finite" : digits(value)));
   const error = view.error(v, cube, cell.x, cell.y);
-  return { parts, error: Number.isNaN(error) || error === undefined ? "" : `± ${digits(v.manifest.interval * error, 2)}` };
+  return { parts, error: error === undefined || Number.isNaN(cube.interval * error) ? "" : `± ${digits(cube.interval * error, 2)}` };
 }
 
 function drawReadout(v) {

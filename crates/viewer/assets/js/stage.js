@@ -164,16 +164,16 @@ function drawCrosshair(v, g) {
   }
 }
 
-/** The bar of a view of radiance: greys as the tone curve makes them, up to display white. */
+/** The bar of a view of radiance: greys as the tone curve makes them, up to what it shows white. */
 function greyScale(v) {
   const white = v.view.white(v) * 2 ** -state.exposure;
-  const low = state.curve === "log" ? white * 10 ** -DECADES : 0;
+  const { grey, from, to, log } = CURVES[state.curve];
   const map = new Uint8ClampedArray(256 * 3);
   for (let i = 0; i < 256; i++) {
-    const part = state.curve === "log" ? 10 ** (DECADES * (i / 255 - 1)) : i / 255;
-    map.fill(255 * encodeSrgb(toneCurves[state.curve](part)), 3 * i, 3 * i + 3);
+    const x = log ? from * (to / from) ** (i / 255) : from + ((to - from) * i) / 255;
+    map.fill(255 * encodeSrgb(grey(x)), 3 * i, 3 * i + 3);
   }
-  return { map, low, high: white, log: state.curve === "log", label: `radiance [${v.view.unit(v)}]` };
+  return { map, low: from * white, high: to * white, log, label: `radiance [${v.view.unit(v)}]` };
 }
 
 /** The bar that tells what colours mean. */

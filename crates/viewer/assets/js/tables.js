@@ -8,7 +8,7 @@ const COLUMNS = [
   ["relMSE", "mean of (x − r)²/(r² + ε²)", (m) => m.relative_mse, (m) => digits(m.relative_mse)],
   ["MAPE", "mean of |x − r|/(|r| + ε)", (m) => m.mape, (m) => percent(m.mape)],
   ["SMAPE", "mean of 2|x − r|/(|x| + |r| + ε)", (m) => m.smape, (m) => percent(m.smape)],
-  ["bias", "Σ(x − r)/Σr, with its 95 % interval if cells err independently (in brackets: at most)", () => null, biasText],
+  ["bias", "Σ(x − r)/Σr, with its 95 % interval (Student's t) if cells err independently (in brackets: at most)", () => null, biasText],
 ];
 
 function biasText(m) {
@@ -61,12 +61,21 @@ function drawNumbers(v) {
   const notes = [
     `ε = 1 % of the mean of the reference's lit cells = ${digits(of.epsilon)}. Numbers are over all channels, at full size. The smallest of a column is bold.`,
   ];
-  if (numbers.cube?.noise !== null && numbers.cube !== null) {
+  if (v.cubes.some((cube) => (cube.entry.numbers?.cube?.noise ?? null) !== null)) {
     notes.push("noise and bias² need no independence of cells; the interval of the bias takes cells as independent, in brackets its widest.");
+  }
+  for (const { entry } of v.cubes.filter(({ entry }) => !entry.independent)) {
+    notes.push(`${entry.label} was rendered from the same random numbers as the reference: noise cannot be told from bias.`);
   }
   const out = v.cubes.filter((cube) => cube.entry.numbers?.cube?.left_out);
   for (const cube of out) notes.push(`${cube.entry.label}: ${cube.entry.numbers.cube.left_out} cells are not finite and are left out.`);
-  byId("numbers-note").replaceChildren(...[...notes, ...v.manifest.notes].map((text) => element("p", { text })));
+  byId("numbers-note").replaceChildren(...notes.map((text) => element("p", { text })));
+}
+
+/** What the maker of the page has to say. */
+function drawNotes(v) {
+  byId("notes-section").hidden = v.manifest.notes.length === 0;
+  byId("notes").replaceChildren(...v.manifest.notes.map((text) => element("li", { text })));
 }
 
 /** A card for each result: what it is, how it was made, the command that repeats it. */
@@ -93,10 +102,11 @@ function drawPacking(v) {
   const shown = parts.length
     ? `Shown: ${size(shape)} of ${size(rendered)} rendered, as exact ${parts.join(" and ")}, to keep the page small; error numbers and curves over all pixels are those of the full size.`
     : `Shown: all ${size(shape)} that were rendered.`;
+  const counted = v.bins > 0 ? "Bins, columns and rows count from 0, as in the arrays." : "Columns and rows count from 0, as in the arrays.";
   const step = (steps) => digits(100 * (2 ** (0.5 / steps) - 1), 2);
   const stored = `Stored on a logarithmic scale: cells within ±${step(code.steps)} %, images within ±${step(code.image_steps)} %, standard errors within ±${step(code.error_steps)} %; zero is exact.`;
   byId("packing").replaceChildren(
-    element("p", { text: shown, id: "shown" }),
+    element("p", { text: `${shown} ${counted}`, id: "shown" }),
     element("p", { text: stored }),
     element("p", { text: `Page by ${program}, with uPlot 1.6.32 (MIT). It asks the network for nothing.` }),
   );

@@ -118,7 +118,7 @@ function viewsFor(v) {
 
 /** What a view shows, as a sentence. */
 function describeView(v) {
-  const frame = `bin ${state.bin + 1} of ${v.bins}, ${v.timeOfBin(state.bin)}`;
+  const frame = v.manifest.timed ? `${v.binOfAll(state.bin)}, ${v.timeOfBin(state.bin)}` : v.binOfAll(state.bin);
   return {
     frame: `Frame at ${frame}`,
     steady: "Steady image, light of all times",

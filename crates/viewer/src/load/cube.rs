@@ -14,17 +14,19 @@ const WANTED: &str = "a cube is (rows, columns, bins) or (rows, columns, bins, c
 
 /// The cube of a `.npy` file.
 pub(super) fn of_npy(path: &Path) -> Result<Loaded, ViewerError> {
-    let arrays = arrays(path, "the array", npy::of_file(path)?)?;
-    Ok(Loaded::new(path, arrays, false))
+    let arrays = arrays(path, "the array", npy::of_file(path)?, Quantity::BinEnergy)?;
+    Ok(Loaded { window_only: true, ..Loaded::new(path, arrays, false) })
 }
 
 /// The cube of an archive with these arrays.
 pub(super) fn of_npz(path: &Path, names: &[String]) -> Result<Loaded, ViewerError> {
     let name = choose(path, names)?;
-    let mut arrays = arrays(path, &format!("`{name}`"), npy::of_member(path, name)?)?;
-    if name == "radiance" {
-        arrays.quantity = Quantity::RadianceAtUpperEdges;
-    }
+    let quantity = match name {
+        "radiance" => Quantity::RadianceAtUpperEdges,
+        _ => Quantity::BinEnergy,
+    };
+    let cells = npy::of_member(path, name)?;
+    let mut arrays = arrays(path, &format!("`{name}`"), cells, quantity)?;
     let edges = edges(path, names, arrays.bins)?;
     let timed = edges.is_some();
     if let Some(edges) = edges {
@@ -41,7 +43,41 @@ pub(super) fn of_npz(path: &Path, names: &[String]) -> Result<Loaded, ViewerErro
         }
         arrays.variance = Some(values);
     }
-    Ok(Loaded::new(path, arrays, timed))
+    let batches = batches(path, names)?;
+    Ok(Loaded { window_only: true, batches, ..Loaded::new(path, arrays, timed) })
+}
+
+/// From how many independent runs the variance was estimated, if the archive tells.
+fn batches(path: &Path, names: &[String]) -> Result<Option<u64>, ViewerError> {
+    if !names.iter().any(|name| name == "batches") {
+        return Ok(None);
+    }
+    match npy::of_member(path, "batches")?.into_f64()[..] {
+        [count] if count >= 1.0 && count.fract() == 0.0 => Ok(Some(count as u64)),
+        _ => Err(ViewerError::cube(path, "`batches` is not one whole number of runs")),
+    }
+}
+
+/// The pixels of an image, row by row, that are not 0.
+pub(super) fn mask(path: &Path) -> Result<([usize; 2], Vec<bool>), ViewerError> {
+    let array = if super::starts_with(path, super::NPY_MAGIC)? {
+        npy::of_file(path)?
+    } else {
+        let names = npy::names(path)?;
+        let name = match &names[..] {
+            [only] => only,
+            _ => names.iter().find(|name| *name == "mask").ok_or_else(|| {
+                let reason = format!("has no array `mask` among its own ({})", names.join(", "));
+                ViewerError::cube(path, reason)
+            })?,
+        };
+        npy::of_member(path, name)?
+    };
+    let [height, width] = array.shape[..] else {
+        let reason = format!("has the shape {:?}; a mask is (rows, columns)", array.shape);
+        return Err(ViewerError::cube(path, reason));
+    };
+    Ok(([height, width], array.into_f64().into_iter().map(|value| value != 0.0).collect()))
 }
 
 /// Which array is the cube.
@@ -92,7 +128,12 @@ fn edges(path: &Path, names: &[String], bins: usize) -> Result<Option<Vec<f64>>,
 }
 
 /// A cube alone: nothing outside the window, times count bins.
-fn arrays(path: &Path, name: &str, array: Array) -> Result<Arrays, ViewerError> {
+fn arrays(
+    path: &Path,
+    name: &str,
+    array: Array,
+    quantity: Quantity,
+) -> Result<Arrays, ViewerError> {
     let [height, width, bins, channels] = match array.shape[..] {
         [height, width, bins] => [height, width, bins, 1],
         [height, width, bins, channels] => [height, width, bins, channels],
@@ -110,23 +151,36 @@ fn arrays(path: &Path, name: &str, array: Array) -> Result<Arrays, ViewerError> 
     }
     let transient = array.into_f32();
     let outside = vec![0.0; height * width * channels];
-    let mut steady = outside.clone();
-    for (pixel, cells) in transient.chunks_exact(bins * channels).enumerate() {
-        for (at, &cell) in cells.iter().enumerate() {
-            steady[pixel * channels + at % channels] += f64::from(cell);
-        }
-    }
-    Ok(Arrays {
+    let mut arrays = Arrays {
         width,
         height,
         bins,
         channels,
-        quantity: Quantity::BinEnergy,
+        quantity,
         opl_edges: (0..=bins).map(|edge| edge as f64).collect(),
         transient,
         variance: None,
         before: outside.clone(),
-        after: outside,
-        steady,
-    })
+        after: outside.clone(),
+        steady: outside,
+    };
+    arrays.steady = within_window(&arrays);
+    Ok(arrays)
+}
+
+/// The light of the window alone: the sum of a pixel's bins; of continuous emission, the radiance at
+/// the last edge.
+pub(super) fn within_window(arrays: &Arrays) -> Vec<f64> {
+    let Arrays { bins, channels, quantity, .. } = *arrays;
+    let counted = match quantity {
+        Quantity::BinEnergy => bins,
+        Quantity::RadianceAtUpperEdges => 1,
+    };
+    let mut image = vec![0.0; arrays.pixels() * channels];
+    for (pixel, sums) in image.chunks_exact_mut(channels).enumerate() {
+        for cell in arrays.pixel(pixel).rchunks_exact(channels).take(counted) {
+            sums.iter_mut().zip(cell).for_each(|(sum, &cell)| *sum += f64::from(cell));
+        }
+    }
+    image
 }

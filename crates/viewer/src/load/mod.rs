@@ -4,13 +4,13 @@
 //! | --- | --- |
 //! | a result folder | its `transient.npz` |
 //! | `.npz` of ours | all arrays |
-//! | `.npz` of others | the cube `transient`, `radiance`, or the only array of 3 or 4 dimensions; if there: `opl_edges` \[m\] or `time_edges` \[s\], `variance` |
+//! | `.npz` of others | the cube `transient`, `radiance`, or the only array of 3 or 4 dimensions; if there: `opl_edges` \[m\] or `time_edges` \[s\], `variance`, `batches` (from how many independent runs the variance is) |
 //! | `.npy` | the cube |
 //!
-//! Cubes are (rows, columns, bins, channels) or (rows, columns, bins), float32 or float64, of any
-//! byte order, in C or Fortran order. What a cube of others lacks is made: the steady image is the
-//! sum of the bins, nothing lies outside the window; its time axis is that of the results that it
-//! is compared with, or counts bins.
+//! Cubes are (rows, columns, bins, channels) or (rows, columns, bins), of floats of 16 to 64 bits,
+//! integers or truth values, of any byte order, in C or Fortran order. What a cube of others lacks is
+//! made: its time axis is that of the results that it is compared with, or counts bins; its steady
+//! image is the light of the window alone ([`Loaded::window_only`]).
 //!
 //! Cells that are negative or not finite are kept and remarked upon.
 
@@ -41,15 +41,49 @@ pub struct Loaded {
     pub arrays: Arrays,
     /// Whether the file has a time axis; otherwise `opl_edges` counts bins.
     pub timed: bool,
+    /// Whether the steady image is made of the bins, for want of what arrives outside the window:
+    /// their sum or, of continuous emission, the radiance at the last edge.
+    pub window_only: bool,
+    /// From how many independent batches the variance is, if the file tells.
+    pub batches: Option<u64>,
     /// What the reader should know: made-up axes, negative cells, cells that are not finite.
     pub remarks: Vec<String>,
 }
 
 impl Loaded {
     fn new(file: &Path, arrays: Arrays, timed: bool) -> Self {
-        let mut loaded = Self { file: file.to_owned(), arrays, timed, remarks: Vec::new() };
+        let mut loaded = Self {
+            file: file.to_owned(),
+            arrays,
+            timed,
+            window_only: false,
+            batches: None,
+            remarks: Vec::new(),
+        };
         loaded.remark_cells();
         loaded
+    }
+
+    /// Leaves out what arrives outside the window, as results that it is compared with know none.
+    fn keep_window(&mut self) {
+        let steady = cube::within_window(&self.arrays);
+        let outside = self.arrays.steady.iter().zip(&steady);
+        let outside: f64 = outside.map(|(all, inside)| (all - inside).max(0.0)).sum();
+        let all: f64 = self.arrays.steady.iter().sum();
+        self.window_only = true;
+        // Beyond the rounding of 32-bit cells.
+        let matters = outside > 1e-6 * all;
+        if !matters {
+            return;
+        }
+        self.remarks.push(format!(
+            "{:.3} % of the light arrives outside the window and is left out here, for what is \
+             compared with it knows none: steady images are of the window alone",
+            100.0 * outside / all
+        ));
+        self.arrays.steady = steady;
+        self.arrays.before.fill(0.0);
+        self.arrays.after.fill(0.0);
     }
 
     /// Whether all cells are finite and none is negative.
@@ -85,13 +119,10 @@ impl Loaded {
 /// [`ViewerError::Cube`] if there is no cube in it.
 pub fn load(path: &Path) -> Result<Loaded, ViewerError> {
     let file = if path.is_dir() { path.join(TRANSIENT) } else { path.to_owned() };
-    let io = |source| ViewerError::Film(FilmError::Io { path: file.clone(), source });
-    let mut start = Vec::new();
-    File::open(&file).map_err(io)?.take(8).read_to_end(&mut start).map_err(io)?;
-    if start.starts_with(NPY_MAGIC) {
+    if starts_with(&file, NPY_MAGIC)? {
         return cube::of_npy(&file);
     }
-    if !start.starts_with(b"PK") {
+    if !starts_with(&file, b"PK")? {
         let reason = "is neither a result of tpb nor a .npz or .npy file";
         return Err(ViewerError::cube(&file, reason));
     }
@@ -104,7 +135,39 @@ pub fn load(path: &Path) -> Result<Loaded, ViewerError> {
     cube::of_npz(&file, &names)
 }
 
-/// Gives results without a time axis that of the first that has one, and checks that all agree.
+/// Whether a file starts with some bytes.
+fn starts_with(file: &Path, magic: &[u8]) -> Result<bool, ViewerError> {
+    let io = |source| ViewerError::Film(FilmError::Io { path: file.to_owned(), source });
+    let mut start = Vec::new();
+    File::open(file).map_err(io)?.take(magic.len() as u64).read_to_end(&mut start).map_err(io)?;
+    Ok(start == magic)
+}
+
+/// Reads which pixels count, row by row: those where a (rows, columns) array is not 0. The array is
+/// that of a `.npy` file, or `mask` or the only one of a `.npz` file.
+///
+/// # Errors
+/// [`ViewerError::Film`] if the file cannot be read, [`ViewerError::Cube`] if there is no such array,
+/// [`ViewerError::Mismatch`] if it has not the shape of these arrays, or no pixel counts.
+pub fn load_mask(path: &Path, arrays: &Arrays) -> Result<Vec<bool>, ViewerError> {
+    let (shape, mask) = cube::mask(path)?;
+    if shape != [arrays.height, arrays.width] {
+        let [rows, columns] = shape;
+        return Err(ViewerError::Mismatch(format!(
+            "shapes differ: the mask {} has ({rows}, {columns}), the results ({}, {}) (rows, columns)",
+            path.display(),
+            arrays.height,
+            arrays.width
+        )));
+    }
+    if !mask.contains(&true) {
+        return Err(ViewerError::cube(path, "is 0 everywhere: no pixel counts"));
+    }
+    Ok(mask)
+}
+
+/// Gives results without a time axis that of the first that has one, leaves out what arrives outside
+/// the window where others know none, and checks that all agree.
 /// Returns whether the time axis is known; otherwise `opl_edges` counts bins everywhere.
 ///
 /// # Errors
@@ -127,6 +190,10 @@ pub fn bring_together(results: &mut [&mut Loaded]) -> Result<bool, ViewerError> 
         for other in others {
             same_shape((&named(first), &first.arrays), (&named(other), &other.arrays))?;
         }
+    }
+    if results.iter().any(|result| result.window_only) {
+        let whole = results.iter_mut().filter(|result| !result.window_only);
+        whole.filter(|result| result.arrays.bins > 0).for_each(|result| result.keep_window());
     }
     Ok(results.iter().any(|result| result.timed))
 }

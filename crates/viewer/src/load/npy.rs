@@ -1,14 +1,18 @@
-//! NumPy arrays of floats, of any byte order and memory order, from files and archive members.
+//! NumPy arrays of numbers, of any size, byte order and memory order, from files and archive members.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::Path;
 
-use npyz::{DType, NpyFile, NpyHeader, Order, TypeChar};
+use half::f16;
+use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 use tpb_film::FilmError;
 use zip::ZipArchive;
 
 use crate::ViewerError;
+
+/// Bytes that are read at once; a multiple of all sizes.
+const CHUNK: usize = 1 << 16;
 
 /// Numbers of one of two sizes.
 pub(super) enum Values {
@@ -40,46 +44,112 @@ impl Array {
     }
 }
 
-/// Why a stream of bytes is no array of floats.
+/// Why a stream of bytes is no array of numbers.
 fn read(mut bytes: impl Read, length: u64) -> Result<Array, String> {
     let header = NpyHeader::from_reader(&mut bytes).map_err(|e| e.to_string())?;
     let shape: Vec<usize> = header.shape().iter().map(|&n| n as usize).collect();
-    let order = header.order();
     let dtype = header.dtype();
-    let size = match &dtype {
-        DType::Plain(kind) if kind.type_char() == TypeChar::Float => kind.size_field(),
-        _ => 0,
+    let plain = match &dtype {
+        DType::Plain(kind) => Some((kind.type_char(), kind.size_field(), kind.endianness())),
+        _ => None,
     };
-    if size != 4 && size != 8 {
-        return Err(format!("holds {}: cubes are float32 or float64", dtype.descr()));
-    }
-    let short = || format!("is shorter than its shape {shape:?}");
+    let number = plain.filter(|&(kind, size, _)| match kind {
+        TypeChar::Float => matches!(size, 2 | 4 | 8),
+        TypeChar::Int | TypeChar::Uint => matches!(size, 1 | 2 | 4 | 8),
+        TypeChar::Bool => size == 1,
+        _ => false,
+    });
+    let Some((kind, size, endianness)) = number else {
+        return Err(format!(
+            "holds {}: cubes are numbers of at most 64 bits, such as float32",
+            dtype.descr()
+        ));
+    };
     let expected = shape.iter().try_fold(size, |bytes, &n| bytes.checked_mul(n as u64));
     // Before memory is asked for it.
     if expected.is_none_or(|bytes| bytes > length) {
-        return Err(short());
+        return Err(format!("is shorter than its shape {shape:?}"));
     }
-    let file = NpyFile::with_header(header, &mut bytes);
-    let failed = |e: io::Error| match e.kind() {
-        io::ErrorKind::UnexpectedEof => short(),
-        _ => e.to_string(),
-    };
-    let values = if size == 4 {
-        Values::Single(in_c_order(file.into_vec().map_err(failed)?, &shape, order))
-    } else {
-        Values::Double(in_c_order(file.into_vec().map_err(failed)?, &shape, order))
+    let mut data = Data { bytes, shape: &shape, order: header.order(), endianness };
+    let values = match (kind, size) {
+        (TypeChar::Float, 2) => data.single(|b| f16::from_le_bytes(b).to_f32())?,
+        (TypeChar::Float, 4) => data.single(f32::from_le_bytes)?,
+        (TypeChar::Float, _) => data.double(f64::from_le_bytes)?,
+        (TypeChar::Int, 1) => data.single(|b| f32::from(i8::from_le_bytes(b)))?,
+        (TypeChar::Int, 2) => data.single(|b| f32::from(i16::from_le_bytes(b)))?,
+        (TypeChar::Int, 4) => data.double(|b| f64::from(i32::from_le_bytes(b)))?,
+        (TypeChar::Int, _) => data.double(|b| i64::from_le_bytes(b) as f64)?,
+        (TypeChar::Uint, 2) => data.single(|b| f32::from(u16::from_le_bytes(b)))?,
+        (TypeChar::Uint, 4) => data.double(|b| f64::from(u32::from_le_bytes(b)))?,
+        (TypeChar::Uint, 8) => data.double(|b| u64::from_le_bytes(b) as f64)?,
+        _ => data.single(|[byte]| f32::from(byte))?,
     };
     // Only at the end of a member does an archive compare its checksum.
-    if io::copy(&mut bytes, &mut io::sink()).map_err(failed)? > 0 {
+    if io::copy(&mut data.bytes, &mut io::sink()).map_err(|e| e.to_string())? > 0 {
         return Err(format!("is longer than its shape {shape:?}"));
     }
     Ok(Array { shape, values })
 }
 
+/// The numbers of an array, as they lie in the file.
+struct Data<'a, R> {
+    bytes: R,
+    shape: &'a [usize],
+    order: Order,
+    endianness: Endianness,
+}
+
+impl<R: Read> Data<'_, R> {
+    fn single<const N: usize>(&mut self, of: impl Fn([u8; N]) -> f32) -> Result<Values, String> {
+        self.numbers(of).map(Values::Single)
+    }
+
+    fn double<const N: usize>(&mut self, of: impl Fn([u8; N]) -> f64) -> Result<Values, String> {
+        self.numbers(of).map(Values::Double)
+    }
+
+    /// In C order; `of` takes the bytes of a number, the lowest first.
+    fn numbers<const N: usize, T: Copy>(
+        &mut self,
+        of: impl Fn([u8; N]) -> T,
+    ) -> Result<Vec<T>, String> {
+        let count = self.shape.iter().product();
+        let mut values = room(count)?;
+        let mut buffer = vec![0; CHUNK.min(count * N)];
+        while values.len() < count {
+            let part = &mut buffer[..CHUNK.min((count - values.len()) * N)];
+            self.bytes.read_exact(part).map_err(|e| match e.kind() {
+                io::ErrorKind::UnexpectedEof => {
+                    format!("is shorter than its shape {:?}", self.shape)
+                }
+                _ => e.to_string(),
+            })?;
+            values.extend(part.as_chunks::<N>().0.iter().map(|&number| {
+                let mut number = number;
+                if self.endianness == Endianness::Big {
+                    number.reverse();
+                }
+                of(number)
+            }));
+        }
+        in_c_order(values, self.shape, self.order)
+    }
+}
+
+/// An empty list with room for so many values; a file may claim, and have, more than there is memory.
+fn room<T>(count: usize) -> Result<Vec<T>, String> {
+    let mut values = Vec::new();
+    let bytes = count.saturating_mul(size_of::<T>());
+    values
+        .try_reserve_exact(count)
+        .map_err(|_| format!("needs {:.3e} bytes of memory, which there are not", bytes as f64))?;
+    Ok(values)
+}
+
 /// Values with the last index running fastest.
-fn in_c_order<T: Copy>(values: Vec<T>, shape: &[usize], order: Order) -> Vec<T> {
+fn in_c_order<T: Copy>(values: Vec<T>, shape: &[usize], order: Order) -> Result<Vec<T>, String> {
     if order == Order::C || values.is_empty() {
-        return values;
+        return Ok(values);
     }
     // In Fortran order the first index runs fastest: its stride is 1.
     let mut strides = Vec::with_capacity(shape.len());
@@ -89,13 +159,13 @@ fn in_c_order<T: Copy>(values: Vec<T>, shape: &[usize], order: Order) -> Vec<T> 
         stride *= n;
     }
     let mut index = vec![0; shape.len()];
-    let mut out = Vec::with_capacity(values.len());
+    let mut out = room(values.len())?;
     loop {
         out.push(values[index.iter().zip(&strides).map(|(i, s)| i * s).sum::<usize>()]);
         let mut axis = shape.len();
         loop {
             if axis == 0 {
-                return out;
+                return Ok(out);
             }
             axis -= 1;
             index[axis] += 1;
@@ -148,4 +218,22 @@ pub(super) fn dimensions(path: &Path, name: &str) -> Result<Option<usize>, Viewe
     let member = archive.by_name(&format!("{name}.npy"));
     let member = member.map_err(|e| ViewerError::cube(path, format!("`{name}`: {e}")))?;
     Ok(NpyHeader::from_reader(member).ok().map(|header| header.shape().len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Regression: a sparse file of the claimed size made the program abort.
+    #[test]
+    fn more_than_there_is_memory_is_an_error() {
+        // More than addresses have bits for, so that no system hopes to find it.
+        let shape = format!("(1, 2, {})", 1_u64 << 58);
+        let header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}");
+        let bytes = format!("{header:<117}\n");
+        let bytes = [b"\x93NUMPY\x01\x00\x76\x00", bytes.as_bytes()].concat();
+        let endless = bytes.chain(io::repeat(0));
+        let message = read(endless, u64::MAX).map(drop).unwrap_err();
+        assert!(message.contains("bytes of memory"), "{message}");
+    }
 }

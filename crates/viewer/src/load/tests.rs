@@ -68,12 +68,133 @@ fn any_byte_order_size_and_memory_order_gives_the_same_cube() {
     }
 }
 
+/// Regression: integers and half floats were refused, such as edges by `np.arange`.
+#[test]
+fn numbers_of_all_types_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let values = [0.0, 1.0, 7.0, 120.0];
+    let little: [(&str, Vec<u8>); 11] = [
+        ("|b1", [[0], [1], [1], [1]].concat()),
+        ("|u1", values.map(|v| [v as u8]).concat()),
+        ("|i1", values.map(|v| (v as i8).to_le_bytes()).concat()),
+        ("<u2", values.map(|v| (v as u16).to_le_bytes()).concat()),
+        ("<i2", values.map(|v| (v as i16).to_le_bytes()).concat()),
+        ("<u4", values.map(|v| (v as u32).to_le_bytes()).concat()),
+        ("<i4", values.map(|v| (v as i32).to_le_bytes()).concat()),
+        ("<u8", values.map(|v| (v as u64).to_le_bytes()).concat()),
+        ("<i8", values.map(|v| (v as i64).to_le_bytes()).concat()),
+        ("<f2", values.map(|v| half::f16::from_f64(v).to_le_bytes()).concat()),
+        ("<f8", values.map(f64::to_le_bytes).concat()),
+    ];
+    for (kind, data) in little {
+        let expected = if kind == "|b1" { [0.0, 1.0, 1.0, 1.0] } else { values };
+        let big = kind.replace('<', ">");
+        let size = data.len() / 4;
+        let swapped: Vec<u8> = data.chunks(size).flat_map(|v| v.iter().rev().copied()).collect();
+        for (kind, data) in [(kind, &data), (&big, &swapped)] {
+            let path = write(folder.path(), "a.npy", &npy(kind, false, "(1, 2, 2)", data));
+            let found = load(&path).unwrap().arrays.transient.clone();
+            assert_eq!(found, expected.map(|v| v as f32), "{kind}");
+        }
+    }
+    let below = [-1_i16, -300].map(i16::to_le_bytes).concat();
+    let path = write(folder.path(), "a.npy", &npy("<i2", false, "(1, 1, 2)", &below));
+    assert_eq!(load(&path).unwrap().arrays.transient, [-1.0, -300.0]);
+    // An archive of several members, edges counted by integers.
+    let cells = npy("<f4", false, "(1, 1, 2)", &[0; 8]);
+    let edges = npy("<i8", false, "(3,)", &[4_i64, 5, 6].map(i64::to_le_bytes).concat());
+    let batches = npy("<i8", false, "()", &9_i64.to_le_bytes());
+    let variance = npy("<f2", false, "(1, 1, 2)", &[0; 4]);
+    let members = [
+        ("transient", &cells),
+        ("opl_edges", &edges),
+        ("batches", &batches),
+        ("variance", &variance),
+    ];
+    let path = packed(folder.path(), "a.npz", &members);
+    let loaded = load(&path).unwrap();
+    assert_eq!(loaded.arrays.opl_edges, [4.0, 5.0, 6.0]);
+    assert_eq!((loaded.batches, loaded.timed), (Some(9), true));
+    let none = npy("<i8", false, "()", &0_i64.to_le_bytes());
+    let path = packed(folder.path(), "a.npz", &[("transient", &cells), ("batches", &none)]);
+    assert!(error(&path).contains("`batches`"));
+}
+
+/// An archive of arrays that are files already.
+fn packed(folder: &Path, name: &str, members: &[(&str, &Vec<u8>)]) -> PathBuf {
+    let path = folder.join(name);
+    let mut writer = zip::ZipWriter::new(fs::File::create(&path).unwrap());
+    for (name, bytes) in members {
+        let options = zip::write::SimpleFileOptions::default();
+        writer.start_file(format!("{name}.npy"), options).unwrap();
+        writer.write_all(bytes).unwrap();
+    }
+    writer.finish().unwrap();
+    path
+}
+
+#[test]
+fn masks_say_which_pixels_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let arrays = cube(3, 2, 4, 1);
+    let of = |name: &str, bytes: &[u8]| load_mask(&write(folder.path(), name, bytes), &arrays);
+    let expected = [true, false, true, true, false, false];
+    let flags = npy("|b1", false, "(2, 3)", &[1, 0, 1, 1, 0, 0]);
+    assert_eq!(of("mask.npy", &flags).unwrap(), expected);
+    let floats = [0.5_f32, 0.0, -1.0, f32::NAN, 0.0, 0.0].map(f32::to_le_bytes).concat();
+    assert_eq!(of("mask.npy", &npy("<f4", false, "(2, 3)", &floats)).unwrap(), expected);
+    let other = npy("|u1", false, "(1,)", &[3]);
+    for members in [&[("only", &flags)][..], &[("mask", &flags), ("other", &other)]] {
+        assert_eq!(load_mask(&packed(folder.path(), "m.npz", members), &arrays).unwrap(), expected);
+    }
+    let two = packed(folder.path(), "m.npz", &[("a", &flags), ("b", &flags)]);
+    let told = |mask: Result<Vec<bool>, ViewerError>| mask.unwrap_err().to_string();
+    assert!(told(load_mask(&two, &arrays)).contains("no array `mask`"));
+    let turned = told(of("mask.npy", &npy("|b1", false, "(3, 2)", &[1; 6])));
+    assert!(turned.contains("(3, 2)") && turned.contains("(2, 3)"), "{turned}");
+    assert!(told(of("mask.npy", &npy("|b1", false, "(2, 3)", &[0; 6]))).contains("no pixel"));
+    assert!(told(of("mask.npy", &npy("|b1", false, "(6,)", &[1; 6]))).contains("(rows, columns)"));
+}
+
+/// Regression: our steady image, of all time, was compared with the sum of another program's bins.
+#[test]
+fn steady_images_are_of_the_window_where_no_more_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let ours = folder.path().join("ours.npz");
+    let arrays = cube(2, 1, 3, 1);
+    arrays.write_npz(&ours).unwrap();
+    let cells: Vec<u8> = arrays.transient.iter().flat_map(|v| v.to_le_bytes()).collect();
+    let bare = write(folder.path(), "bare.npy", &npy("<f4", false, "(1, 2, 3)", &cells));
+    for order in [[&ours, &bare], [&bare, &ours]] {
+        let mut both = order.map(|path| load(path).unwrap());
+        bring_together(&mut both.each_mut()).unwrap();
+        let [a, b] = &both;
+        assert_eq!(a.arrays.steady, b.arrays.steady);
+        let whole = if order[0] == &ours { a } else { b };
+        assert!(whole.window_only && whole.arrays.before == [0.0; 2]);
+        assert!(whole.remarks[0].contains("outside the window"), "{:?}", whole.remarks);
+    }
+    // Among our own, light of all time is compared.
+    let mut both = [load(&ours).unwrap(), load(&ours).unwrap()];
+    bring_together(&mut both.each_mut()).unwrap();
+    assert!(both.iter().all(|loaded| loaded.arrays == arrays && loaded.remarks.is_empty()));
+
+    // Radiances of different instants do not add up.
+    let path =
+        packed(folder.path(), "on.npz", &[("radiance", &npy("<f4", false, "(1, 2, 3)", &cells))]);
+    let [.., last] = arrays.pixel(1) else { panic!("three bins") };
+    assert_eq!(load(&path).unwrap().arrays.steady[1], f64::from(*last));
+}
+
 #[test]
 fn broken_files_are_errors_that_name_them() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str, bytes: &[u8]| error(&write(folder.path(), name, bytes));
-    let message = file("int.npy", &npy("<i4", false, "(2, 2, 2)", &[0; 32]));
-    assert!(message.contains("int.npy") && message.contains("float32"), "{message}");
+    for (kind, size) in [("<c8", 8), ("<f16", 16), ("|S4", 4), ("<M8[s]", 8)] {
+        let message = file("odd.npy", &npy(kind, false, "(2, 2, 2)", &vec![0; 8 * size]));
+        let told = message.contains("odd.npy") && message.contains("at most 64 bits");
+        assert!(told, "{kind}: {message}");
+    }
     assert!(file("short.npy", &npy("<f4", false, "(2, 2, 2)", &[0; 31])).contains("shorter"));
     let huge = "(4294967295, 4294967295, 4294967295)";
     assert!(file("huge.npy", &npy("<f4", false, huge, &[0; 32])).contains("shorter"));

@@ -72,9 +72,9 @@ fn words_tell_what_is_seen() {
         press(page, &["2"]);
         let label = "document.getElementById('stage').getAttribute('aria-label')";
         let words = ask(page, label);
-        // The centre of bin 21: (2 + 20.5 * 0.06) m.
+        // The centre of bin 20, counted from 0: (2 + 20.5 * 0.06) m.
         for part in
-            ["bin 21 of 40", "10.77", "photon beams", "−1.5 stops", "brightest cell", "column"]
+            ["bin 20 of 0–39", "10.77", "photon beams", "−1.5 stops", "brightest cell", "column"]
         {
             assert!(words.as_str().unwrap().contains(part), "{part} is missing in {words}");
         }
@@ -84,6 +84,8 @@ fn words_tell_what_is_seen() {
         for part in ["column 2, row 3", "linear axis", "path tracing: largest"] {
             assert!(chart.as_str().unwrap().contains(part), "{part} is missing in {chart}");
         }
+        let text = ask(page, "document.getElementById('time-text').textContent");
+        assert_eq!(text, "10.77 ns · bin 20 of 0–39");
         let unnamed = "[...document.querySelectorAll('button, select, input, canvas')].filter((e) => \
             !e.closest('#chart') && \
             !(e.textContent.trim() || e.getAttribute('aria-label') || e.labels?.length)).length";

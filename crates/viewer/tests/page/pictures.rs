@@ -1,9 +1,10 @@
 //! Colours on the canvas are those of the values.
 
+use tpb_film::{Tone, ToneMap};
 use tpb_viewer::VALUE_ERROR;
 
 use crate::scene::{BIN, SHAPE, Scene, cell};
-use crate::{ask, press, with_page};
+use crate::{ask, numbers, press, with_page};
 
 /// The colour at the middle of a cell on the stage.
 fn colour_script(x: usize, y: usize) -> String {
@@ -108,4 +109,64 @@ fn maps_tell_times_within_a_bin() {
         let low = ask(page, "document.getElementById('scale-low').textContent");
         assert!(low.as_str().unwrap().ends_with(" ns"), "{low}");
     });
+}
+
+/// Regression: the page's curves were not those of pictures and videos of the same names.
+#[test]
+fn tone_curves_are_those_of_our_pictures() {
+    let scene = Scene::new(3);
+    // A front, its tail, and colours that leave the display.
+    let cells = [(6, 4, 22), (2, 1, 9), (0, 0, 38), (9, 7, 19)];
+    with_page(&scene.comparison(), |page| {
+        ask(page, "tpbViewer.update({ x: 13, y: 9 })");
+        let white = ask(page, "tpbViewer.viewer.view.white(tpbViewer.viewer)").as_f64().unwrap();
+        for (name, tone) in [("linear", Tone::Linear), ("log", Tone::Log), ("filmic", Tone::Filmic)]
+        {
+            ask(page, &format!("location.hash = '#curve={name}'"));
+            page.wait_for(&format!("tpbViewer.state.curve === '{name}'")).unwrap();
+            for stops in [-3.0, 0.0, 2.5] {
+                ask(page, &format!("tpbViewer.update({{ exposure: {stops} }})"));
+                let map = ToneMap::new(white, tone, stops);
+                for (x, y, bin) in cells {
+                    ask(page, &format!("tpbViewer.update({{ bin: {bin} }})"));
+                    let rgb = [0, 1, 2].map(|c| cell(&scene.path, x, y, bin, c));
+                    let expected = map.colour(rgb).map(|v| f64::from(tpb_film::srgb(v)));
+                    let found = numbers(&ask(page, &colour_script(x, y)));
+                    for (found, expected) in found.iter().zip(expected) {
+                        // 1 % of a value is at most 2.4 steps of the steepest curve, and the page
+                        // rounds linear values to 1/4095.
+                        assert!(
+                            (found - expected).abs() <= 4.0,
+                            "{name} {stops} {x},{y},{bin}: {found} for {expected}"
+                        );
+                    }
+                }
+            }
+        }
+        // The bar ends where a curve is white.
+        let mut ends = Vec::new();
+        for name in ["linear", "log", "filmic"] {
+            ask(page, &format!("tpbViewer.update({{ curve: '{name}', exposure: 0 }})"));
+            let bar = ask(page, "document.getElementById('scale-high').textContent");
+            let text = bar.as_str().unwrap().replace('−', "-");
+            ends.push(text.parse::<f64>().unwrap() / white);
+        }
+        for (found, exact) in ends.iter().zip([1.0, 10.0, 7.24]) {
+            assert!((found / exact - 1.0).abs() < 6e-3, "{ends:?}");
+        }
+    });
+}
+
+#[test]
+fn notes_are_shown_with_or_without_a_reference() {
+    let scene = Scene::new(1);
+    let mut comparison = scene.comparison();
+    comparison.notes.push("Bin 20: the front meets the <wall>.".to_owned());
+    for methods in [3, 1] {
+        comparison.methods.truncate(methods);
+        with_page(&comparison, |page| {
+            let shown = "document.getElementById('notes').innerText";
+            assert_eq!(ask(page, shown), "Bin 20: the front meets the <wall>.");
+        });
+    }
 }

@@ -86,6 +86,7 @@ impl Scene {
     /// All three, the reference last.
     pub(crate) fn comparison(&self) -> Comparison<'_> {
         let mut path = Method::new("path", "path tracing", &self.path);
+        path.batches = Some(5);
         path.provenance.push(("seed".to_owned(), "7".to_owned()));
         path.command = Some("tpb render scene.json --method path".to_owned());
         let beams = Method::new("beams", "photon beams", &self.beams);

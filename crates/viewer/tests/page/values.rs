@@ -72,8 +72,9 @@ fn the_plot_of_a_pixel_holds_its_time_response_and_band() {
                     assert!(low.is_nan() && high.is_nan(), "no band without variance");
                     continue;
                 }
-                let noise = if method == 0 { 0.2 } else { 0.05 };
-                let half = 1.96 * noise * exact;
+                // Five batches; an unknown number.
+                let relative = [2.776_445 * 0.2, 1.959_964 * 0.05][method];
+                let half = relative * exact;
                 let tolerance = (SE_ERROR + VALUE_ERROR) * half + 1e-12 * exact;
                 assert!(
                     ((high - low) / 2.0 - half).abs() <= tolerance,
@@ -81,6 +82,42 @@ fn the_plot_of_a_pixel_holds_its_time_response_and_band() {
                 );
             }
         }
+        // Regression: the label said ±1.96 whatever the number of batches.
+        let note = ask(page, "document.getElementById('chart-note').textContent");
+        for part in [
+            "Student's t",
+            "path tracing ±2.78 standard errors of 5 batches",
+            "photon beams ±1.96 standard errors of an unknown number of batches",
+        ] {
+            assert!(note.as_str().unwrap().contains(part), "{part} is missing in {note}");
+        }
+    });
+}
+
+#[test]
+fn one_batch_and_shared_random_numbers_have_no_bands_and_no_noise() {
+    let scene = Scene::new(1);
+    let mut comparison = scene.comparison();
+    comparison.methods[0].batches = Some(1);
+    comparison.methods[1].independent = false;
+    with_page(&comparison, |page| {
+        let band = "tpbViewer.chart.plot.data[1].every((value) => value === null)";
+        assert_eq!(ask(page, band), true);
+        let note = ask(page, "document.getElementById('chart-note').textContent");
+        assert!(note.as_str().unwrap().contains("path tracing none, from 1 batch"), "{note}");
+        ask(page, "tpbViewer.update({ view: 'error', metric: 'z', method: 1, bin: 15 })");
+        let read =
+            "String(tpbViewer.viewer.view.read(tpbViewer.viewer, tpbViewer.viewer.cube, 4, 3))";
+        assert_eq!(ask(page, read), "NaN", "standard errors of the difference are not known");
+        let rows = ask(
+            page,
+            "[...document.querySelectorAll('#numbers tbody tr')].map((row) => \
+             [...row.children].map((cell) => cell.textContent))",
+        );
+        assert_eq!((&rows[2][0], &rows[2][3]), (&"photon beams".into(), &"–".into()), "{rows}");
+        assert_ne!(rows[1][3], "–", "noise is told of the other");
+        let notes = ask(page, "document.getElementById('numbers-note').textContent");
+        assert!(notes.as_str().unwrap().contains("same random numbers"), "{notes}");
     });
 }
 
@@ -110,7 +147,12 @@ fn the_readout_shows_every_method_under_the_cursor() {
             }
         }
         let interval = rows[0][4].as_str().unwrap();
-        assert!(interval.starts_with('±') && rows[2][4] == "", "{rows}");
+        let half: f64 = interval.strip_prefix("± ").unwrap().replace('−', "-").parse().unwrap();
+        // Luminance of channels 1, 0.7 and 0.4 times the first.
+        let luminance = 0.2126 + 0.7 * 0.7152 + 0.4 * 0.0722;
+        let exact = 2.776_445 * 0.2 * luminance * cell(&scene.path, 9, 2, 20, 0);
+        assert!((half / exact - 1.0).abs() <= SE_ERROR + VALUE_ERROR + 0.05, "{half} {exact}");
+        assert_eq!(rows[2][4], "", "no variance");
     });
 }
 
@@ -208,8 +250,21 @@ fn reduced_cubes_are_exact_means_and_sums_and_say_so() {
         assert_eq!(ask(page, "document.getElementById('chart-title').textContent"), name);
         let note = ask(page, "document.getElementById('shown').textContent");
         let note = note.as_str().unwrap();
-        let parts = ["14 × 10 pixels × 40 bins rendered", "to keep the page small"];
+        let parts = ["14 × 10 pixels × 40 bins rendered", "to keep the page small", "count from 0"];
         assert!(parts.iter().all(|part| note.contains(part)), "{note}");
+        // Regression: links and labels counted reduced bins, and from 1.
+        ask(page, "location.hash = '#bin=21&pixel=9,7'");
+        page.wait_for("tpbViewer.state.x !== 1").unwrap();
+        let (f, b) = (factors.pixels, factors.bins);
+        let state = "[tpbViewer.state.x, tpbViewer.state.y, tpbViewer.state.bin].join()";
+        assert_eq!(ask(page, state), format!("{},{},{}", 9 / f, 7 / f, 21 / b));
+        let first = 21 / b * b;
+        let bins = match (first + b - 1).min(SHAPE.2 - 1) {
+            last if last == first => format!("bin {first} of 0–39"),
+            last => format!("bins {first}–{last} of 0–39"),
+        };
+        let shown = ask(page, "document.getElementById('time-text').textContent");
+        assert!(shown.as_str().unwrap().ends_with(&bins), "{bins} is missing in {shown}");
     });
     assert!(report.bytes <= comparison.budget_bytes);
 }
@@ -230,7 +285,14 @@ fn odd_cells_times_without_a_unit_and_steady_films_are_shown() {
         assert_eq!(ask(page, &read(bin)), "NaN");
         assert!(ask(page, &read(bin + 1)).as_str().unwrap().starts_with("-0.0010"));
         press(page, &["Home"]);
-        assert_eq!(ask(page, "document.getElementById('time-text').textContent"), "1/40");
+        let text = "document.getElementById('time-text').textContent";
+        assert_eq!(ask(page, text), "bin 0 of 0–39");
+        ask(page, "tpbViewer.update({ view: 'peak', bin: 20 })");
+        assert_eq!(ask(page, text), "bin 20 of 0–39");
+        // 1 % of 140 pixels see the front earlier than bin 4.
+        let low = ask(page, "document.getElementById('scale-low').textContent");
+        assert_eq!(low, "bin 4");
+        ask(page, "tpbViewer.update({ view: 'frame' })");
         let views = ask(page, "tpbViewer.viewer.views.map((view) => view.name).join()");
         assert_eq!(
             views, "frame,steady,xt,yt,arrival,mean,peak,before,after",
