@@ -12,7 +12,8 @@
 //! | `paint` | frames as samples: tone, hue of arrival, scale, label |
 //! | `encode` | APNG, PNG, GIF; MP4 and WebM through the program ffmpeg |
 //!
-//! Frame k is the mean of the bins that it covers, so that brightness is energy per bin whatever
+//! Bins count from 0, in ranges and labels, as in the arrays. Tone curves are those of
+//! [`ToneMap`](tpb_film::ToneMap), as in pictures and in the viewer's pages. Frame k is the mean of the bins that it covers, so that brightness is energy per bin whatever
 //! their number. Everything is deterministic but for what ffmpeg does.
 //!
 //! Not handled: unwarping. The film subtracts the leg to the first surface from each arrival as it

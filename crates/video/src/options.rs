@@ -36,7 +36,7 @@ pub enum White {
 pub struct VideoOptions {
     /// Tone, exposure, percentiles, speed, largest number of frames.
     pub pictures: PictureOptions,
-    /// The bins to show; all by default.
+    /// The bins to show, counted from 0; all by default.
     pub bins: Option<Range<usize>>,
     /// What is display white.
     pub white: White,
@@ -44,7 +44,7 @@ pub struct VideoOptions {
     pub scale: usize,
     /// Whether time and OPL are written into the frames.
     pub label: bool,
-    /// Whether the arrays have a time axis; otherwise a label counts bins.
+    /// Whether the arrays have a time axis; otherwise a label counts bins, from 0.
     pub timed: bool,
     /// Hue tells this time of arrival: what has arrived so far stays, light of the frame itself is
     /// white. Otherwise light has its own colours.

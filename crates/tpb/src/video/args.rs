@@ -105,7 +105,7 @@ pub(crate) struct TimeArgs {
     )]
     pub(crate) opl_range: Option<Bounds>,
 
-    /// Bins A to B - 1
+    /// Bins A to B - 1, counted from 0
     #[arg(long, value_name = "A..B", value_parser = values::bins, allow_hyphen_values = true)]
     pub(crate) bins: Option<values::Bins>,
 

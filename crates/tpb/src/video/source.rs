@@ -70,7 +70,10 @@ impl Source {
             let (first, end) = (bins.0.unwrap_or(0), bins.1.unwrap_or(count));
             if first >= end || end > count {
                 let message = format!("--bins {first}..{end}: the result has the bins 0..{count}");
-                return Err(Failure::with_help(message, "A..B are the bins A to B - 1"));
+                return Err(Failure::with_help(
+                    message,
+                    "A..B are the bins A to B - 1, counted from 0",
+                ));
             }
             return Ok(Some(first..end));
         }

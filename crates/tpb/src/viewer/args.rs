@@ -33,16 +33,20 @@ Examples:
   tpb compare path beams --open
   tpb compare beams other.npy --reference long --label beams --label other --label truth
   tpb compare path beams --reference long --json --no-page
+  tpb compare path beams --reference long --mask fog.npy
 
 Inputs are result folders, or cubes of other programs: .npz or .npy of (rows, columns, bins) or
-(rows, columns, bins, channels), float32 or float64. A cube without a time axis takes that of the
-others. All shapes must agree.
+(rows, columns, bins, channels). A cube without a time axis takes that of the others. All shapes,
+pulses and zeros of time must agree. Where one knows no light outside its window, steady images are
+of the window alone.
 
 With sums over n cells, d = x - r, and e = 1 % of the mean of |r| over the reference's lit cells:
 RMSE sqrt(sum d2/n); NMSE sum d2/sum r2; noise: what of NMSE the variances account for (render with
 --variance), bias2: the rest; relMSE mean of d2/(r2 + e2); MAPE mean of |d|/(|r| + e); SMAPE mean of
-2|d|/(|x| + |r| + e); bias sum d/sum r, with the half width of its 95 % interval if cells err
-independently, and in brackets its widest.
+2|d|/(|x| + |r| + e); bias sum d/sum r, with the half width of its 95 % interval (Student's t, by
+the number of passes) if cells err independently, and in brackets its widest.
+
+A render and its reference need different seeds: with the same method and seed they share passes.
 
 Exit codes: 0 done; 1 done, but some cells are negative or not finite; 2 bad usage or files.")]
 pub(crate) struct CompareArgs {
@@ -55,6 +59,11 @@ pub(crate) struct CompareArgs {
     /// What both are judged by
     #[arg(long, value_name = "RESULT")]
     pub(crate) reference: Option<PathBuf>,
+
+    /// Also judge those pixels alone where this array of (rows, columns), .npy or .npz, is not 0: such
+    /// as those that see no lamp, which else may outweigh all others
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mask: Option<PathBuf>,
 
     /// Names, in the order A, B, reference [default: those of the files]
     #[arg(long = "label", value_name = "TEXT")]

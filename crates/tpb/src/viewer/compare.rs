@@ -2,10 +2,12 @@
 
 use std::process::ExitCode;
 
-use tpb_viewer::{Comparison, Loaded, bring_together};
+use tpb_film::Arrays;
+use tpb_viewer::{Comparison, Loaded, Ruling, bring_together, load_mask};
 
+use super::alike::{check, remark_shared};
 use super::input::{Input, name};
-use super::numbers::{Judged, as_json, as_text};
+use super::numbers::{Judged, Verdicts};
 use super::{CompareArgs, describe, open_page, write_page};
 use crate::failure::Failure;
 use crate::print;
@@ -25,13 +27,26 @@ pub(crate) fn run(args: &CompareArgs) -> Result<ExitCode, Failure> {
     let mut loaded: Vec<&mut Loaded> = inputs.iter_mut().map(|input| &mut input.loaded).collect();
     let timed = bring_together(&mut loaded)?;
     tell_apart(&mut inputs, |index| paths[index].display().to_string());
+    check(&mut inputs)?;
     // Without a reference of its own, the first judges the second.
     let reference = if args.reference.is_some() { 2 } else { 0 };
-    let judged = judge(&inputs, reference);
+    remark_shared(&mut inputs, reference);
+    let truth = &inputs[reference].loaded.arrays;
+    let mask = args.mask.as_deref().map(|file| load_mask(file, truth)).transpose()?;
+    let verdicts = Verdicts {
+        inputs: &inputs,
+        reference,
+        judged: judge(&inputs, reference, mask.as_deref()),
+        mask: args.mask.as_deref().zip(mask.as_deref()),
+        notes: notes(args, truth, mask.as_deref()),
+    };
     let page = if args.no_page {
         None
     } else {
         let mut comparison = comparison(args, &inputs, reference);
+        comparison.notes.clone_from(&verdicts.notes);
+        comparison.judged_label = mask_label(args);
+        comparison.judged.clone_from(&mask);
         comparison.timed = timed;
         comparison.budget_bytes = args.page.budget_bytes();
         let default = format!("compare-{}-{}", name(&args.a), name(&args.b));
@@ -39,10 +54,10 @@ pub(crate) fn run(args: &CompareArgs) -> Result<ExitCode, Failure> {
     };
     if args.json {
         let path = page.as_ref().map(|(path, report)| (path.as_path(), report));
-        print::out(&as_json(&inputs, reference, &judged, path))?;
+        print::out(&verdicts.as_json(path))?;
     } else {
         let page = page.as_ref().map(|(path, report)| describe(path, report));
-        print::out(&as_text(&inputs, reference, &judged, page.as_deref()))?;
+        print::out(&verdicts.as_text(page.as_deref()))?;
     }
     if let Some((path, _)) = &page {
         open_page(path, &args.page)?;
@@ -61,11 +76,29 @@ fn tell_apart(inputs: &mut [Input], path: impl Fn(usize) -> String) {
     }
 }
 
-fn judge(inputs: &[Input], reference: usize) -> Vec<Judged> {
+fn judge(inputs: &[Input], reference: usize, mask: Option<&[bool]>) -> Vec<Judged> {
     let others = (0..inputs.len()).filter(|&index| index != reference);
-    others
-        .map(|index| Judged::new(index, &inputs[index].loaded, &inputs[reference].loaded))
-        .collect()
+    others.map(|index| Judged::new(index, &inputs[index], &inputs[reference], mask)).collect()
+}
+
+/// The mask's pixels in words.
+fn mask_label(args: &CompareArgs) -> String {
+    let file = args.mask.as_ref().map(|file| file.display().to_string());
+    file.map_or_else(String::new, |file| format!("pixels in {file}"))
+}
+
+/// What else to know about the numbers.
+fn notes(args: &CompareArgs, truth: &Arrays, mask: Option<&[bool]>) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(mask) = mask {
+        let counted = mask.iter().filter(|counts| **counts).count();
+        notes.push(format!("{}: {counted} of {}", mask_label(args), mask.len()));
+    }
+    if let Some(ruling) = Ruling::of(truth, mask) {
+        let way_out = if mask.is_some() { "" } else { "; --mask counts others alone" };
+        notes.push(format!("{ruling}{way_out}"));
+    }
+    notes
 }
 
 /// Keys for links: labels in plain letters, told apart by a number.
@@ -89,6 +122,7 @@ fn comparison<'a>(args: &CompareArgs, inputs: &'a [Input], reference: usize) -> 
         .map(|(index, (input, key))| {
             let mut method = input.method(key);
             method.is_reference = index == reference;
+            method.independent = method.is_reference || input.independent_of(&inputs[reference]);
             method
         })
         .collect();

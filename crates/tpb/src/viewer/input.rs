@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 use tpb_render::Report;
-use tpb_viewer::{Loaded, Method, PixelErrors, load};
+use tpb_viewer::{Estimate, Loaded, Method, PixelErrors, load};
 
 use crate::failure::Failure;
 use crate::folder;
@@ -43,9 +43,29 @@ impl Input {
         Some(Path::new(file).file_stem()?.to_string_lossy().into_owned())
     }
 
+    /// From how many independent batches its variance is: the passes of a render.
+    fn batches(&self) -> Option<u64> {
+        self.report.as_ref().map(|report| report.run.passes).or(self.loaded.batches)
+    }
+
+    /// Its arrays, for error numbers.
+    pub(super) fn estimate(&self) -> Estimate<'_> {
+        Estimate { arrays: &self.loaded.arrays, batches: self.batches() }
+    }
+
+    /// Whether nothing says that it shares random numbers with another result.
+    pub(super) fn independent_of(&self, other: &Self) -> bool {
+        let made = |input: &Self| {
+            let report = input.report.as_ref()?;
+            Some((report.method.name.clone(), report.options.run.seed))
+        };
+        made(self).is_none() || made(self) != made(other)
+    }
+
     /// As the page shows it.
     pub(super) fn method(&self, key: &str) -> Method<'_> {
         let mut method = Method::new(key, &self.label, &self.loaded.arrays);
+        method.batches = self.batches();
         method.caption = self.loaded.remarks.join("; ");
         method.provenance.push(("file".to_owned(), self.loaded.file.display().to_string()));
         if let Some(report) = &self.report {
@@ -92,6 +112,9 @@ fn provenance(report: &Report) -> Vec<(String, String)> {
     let error = |error: f64| format!("{:.3} % (median relative error of a pixel)", 100.0 * error);
     rows.extend(run.relative_error.map(|value| ("error", error(value))));
     rows.push(("pulse", pulse(report.options.pulse)));
+    if report.options.unwarp {
+        rows.push(("times", "without the leg from the eye to the first surface".to_owned()));
+    }
     rows.push(("options", options(&report.method.options)));
     rows.extend(report.warnings.iter().map(|warning| ("warning", warning.clone())));
     rows.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()

@@ -1,5 +1,6 @@
 //! `tpb view` and `tpb compare`: results as a page that opens from a file, and their error numbers.
 
+mod alike;
 mod args;
 mod command;
 mod compare;

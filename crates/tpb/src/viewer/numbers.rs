@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use tpb_viewer::{Loaded, Metrics, PageReport};
+use tpb_viewer::{Metrics, PageReport};
 
 use super::input::Input;
 use crate::summary::Lines;
@@ -13,6 +13,14 @@ use crate::summary::Lines;
 pub(super) struct Judged {
     /// Which of the inputs.
     index: usize,
+    /// Over all pixels.
+    all: Numbers,
+    /// Over those of the mask.
+    masked: Option<Numbers>,
+}
+
+/// Numbers over some pixels.
+struct Numbers {
     /// Over all cells; none for steady results.
     cube: Option<Metrics>,
     /// Over the steady image.
@@ -21,14 +29,35 @@ pub(super) struct Judged {
 
 impl Judged {
     /// Of a result against the reference, which has its shape.
-    pub(super) fn new(index: usize, result: &Loaded, reference: &Loaded) -> Self {
-        let (x, r) = (&result.arrays, &reference.arrays);
-        Self {
-            index,
-            cube: (x.bins > 0).then(|| Metrics::of_cube(x, r, None)),
-            steady: Metrics::of_steady(x, r, None),
-        }
+    pub(super) fn new(
+        index: usize,
+        result: &Input,
+        reference: &Input,
+        mask: Option<&[bool]>,
+    ) -> Self {
+        let (x, r) = (result.estimate(), reference.estimate());
+        let independent = result.independent_of(reference);
+        let of_cube = |mask| {
+            let metrics = Metrics::of_cube(x, r, mask);
+            if independent { metrics } else { metrics.without_noise() }
+        };
+        let numbers = |mask| Numbers {
+            cube: (x.arrays.bins > 0).then(|| of_cube(mask)),
+            steady: Metrics::of_steady(x.arrays, r.arrays, mask),
+        };
+        Self { index, all: numbers(None), masked: mask.map(|mask| numbers(Some(mask))) }
     }
+}
+
+/// All that is said about results.
+pub(super) struct Verdicts<'a> {
+    pub(super) inputs: &'a [Input],
+    /// Which of them judges.
+    pub(super) reference: usize,
+    pub(super) judged: Vec<Judged>,
+    /// Which pixels are also judged alone, from which file.
+    pub(super) mask: Option<(&'a Path, &'a [bool])>,
+    pub(super) notes: Vec<String>,
 }
 
 /// Names of the columns.
@@ -90,80 +119,91 @@ fn table(heading: &str, rows: &[(&str, &Metrics)]) -> String {
     text
 }
 
-/// What a person reads.
-pub(super) fn as_text(
-    inputs: &[Input],
-    reference: usize,
-    judged: &[Judged],
-    page: Option<&str>,
-) -> String {
-    let mut head = Lines::default();
-    let judge = &inputs[reference];
-    head.add("reference", &format!("{} ({})", judge.label, judge.loaded.file.display()));
-    let arrays = &judge.loaded.arrays;
-    let (height, width, bins, channels) =
-        (arrays.height, arrays.width, arrays.bins, arrays.channels);
-    head.add(
-        "shape",
-        &format!("({height}, {width}, {bins}, {channels}) = (rows, columns, bins, channels)"),
-    );
-    let label = |judged: &Judged| inputs[judged.index].label.as_str();
-    let cube: Vec<_> = judged.iter().filter_map(|j| Some((label(j), j.cube.as_ref()?))).collect();
-    let steady: Vec<_> = judged.iter().map(|j| (label(j), &j.steady)).collect();
-    let mut text = head.text();
-    if !cube.is_empty() {
-        let _ = write!(text, "\n{}", table("all cells", &cube));
+impl Verdicts<'_> {
+    /// A table of some numbers of each result; nothing if there are none.
+    fn table<'s>(
+        &'s self,
+        heading: &str,
+        of: impl Fn(&'s Judged) -> Option<&'s Metrics>,
+    ) -> String {
+        let rows: Vec<_> = self
+            .judged
+            .iter()
+            .filter_map(|judged| Some((self.inputs[judged.index].label.as_str(), of(judged)?)))
+            .collect();
+        if rows.is_empty() { String::new() } else { format!("\n{}", table(heading, &rows)) }
     }
-    let _ = write!(text, "\n{}\n", table("steady image", &steady));
-    let mut tail = Lines::default();
-    if let Some(page) = page {
-        tail.add("page", page);
-    }
-    for input in inputs {
-        for remark in &input.loaded.remarks {
-            tail.add("WARNING", &format!("{}: {remark}", input.label));
-        }
-    }
-    let tail = tail.text();
-    text.truncate(if tail.is_empty() { text.trim_end().len() } else { text.len() });
-    text.push_str(&tail);
-    format!("{}\n", text.trim_end())
-}
 
-/// What a program reads.
-pub(super) fn as_json(
-    inputs: &[Input],
-    reference: usize,
-    judged: &[Judged],
-    page: Option<(&Path, &PageReport)>,
-) -> String {
-    let input = |index: usize| -> Value {
-        let input = &inputs[index];
-        json!({
-            "label": input.label,
-            "file": input.loaded.file.display().to_string(),
-            "remarks": input.loaded.remarks,
-        })
-    };
-    let results: Vec<Value> = judged
-        .iter()
-        .map(|judged| {
+    /// What a person reads.
+    pub(super) fn as_text(&self, page: Option<&str>) -> String {
+        let mut head = Lines::default();
+        let judge = &self.inputs[self.reference];
+        head.add("reference", &format!("{} ({})", judge.label, judge.loaded.file.display()));
+        let arrays = &judge.loaded.arrays;
+        let (height, width, bins, channels) =
+            (arrays.height, arrays.width, arrays.bins, arrays.channels);
+        head.add(
+            "shape",
+            &format!("({height}, {width}, {bins}, {channels}) = (rows, columns, bins, channels)"),
+        );
+        let mut text = head.text();
+        text += &self.table("all cells", |judged| judged.all.cube.as_ref());
+        text += &self.table("cells in mask", |judged| judged.masked.as_ref()?.cube.as_ref());
+        text += &self.table("steady image", |judged| Some(&judged.all.steady));
+        text += &self.table("steady in mask", |judged| Some(&judged.masked.as_ref()?.steady));
+        let mut tail = Lines::default();
+        if let Some(page) = page {
+            tail.add("page", page);
+        }
+        for note in &self.notes {
+            tail.add("note", note);
+        }
+        for input in self.inputs {
+            for remark in &input.loaded.remarks {
+                tail.add("WARNING", &format!("{}: {remark}", input.label));
+            }
+        }
+        let tail = tail.text();
+        let text = text.trim_end();
+        if tail.is_empty() { format!("{text}\n") } else { format!("{text}\n\n{tail}") }
+    }
+
+    /// What a program reads.
+    pub(super) fn as_json(&self, page: Option<(&Path, &PageReport)>) -> String {
+        let input = |index: usize| -> Value {
+            let input = &self.inputs[index];
+            json!({
+                "label": input.label,
+                "file": input.loaded.file.display().to_string(),
+                "remarks": input.loaded.remarks,
+            })
+        };
+        let results = self.judged.iter().map(|judged| {
             let mut result = input(judged.index);
-            result["cube"] = json!(judged.cube);
-            result["steady"] = json!(judged.steady);
+            result["cube"] = json!(judged.all.cube);
+            result["steady"] = json!(judged.all.steady);
+            if let Some(masked) = &judged.masked {
+                result["masked_cube"] = json!(masked.cube);
+                result["masked_steady"] = json!(masked.steady);
+            }
             result
-        })
-        .collect();
-    let arrays = &inputs[reference].loaded.arrays;
-    let report = json!({
-        "reference": input(reference),
-        "shape": [arrays.height, arrays.width, arrays.bins, arrays.channels],
-        "results": results,
-        "page": page.map(|(path, report)| json!({
-            "file": path.display().to_string(),
-            "bytes": report.bytes,
-            "shown": report.shown,
-        })),
-    });
-    format!("{report:#}\n")
+        });
+        let arrays = &self.inputs[self.reference].loaded.arrays;
+        let report = json!({
+            "reference": input(self.reference),
+            "shape": [arrays.height, arrays.width, arrays.bins, arrays.channels],
+            "mask": self.mask.map(|(file, mask)| json!({
+                "file": file.display().to_string(),
+                "pixels": mask.iter().filter(|counts| **counts).count(),
+            })),
+            "notes": self.notes,
+            "results": results.collect::<Vec<Value>>(),
+            "page": page.map(|(path, report)| json!({
+                "file": path.display().to_string(),
+                "bytes": report.bytes,
+                "shown": report.shown,
+            })),
+        });
+        format!("{report:#}\n")
+    }
 }

@@ -65,7 +65,7 @@ fn numbers_are_those_of_their_formulas() {
 #[test]
 fn a_page_holds_its_results_and_the_commands_that_repeat_them() {
     let folder = tempfile::tempdir().unwrap();
-    let more = ["--seed", "5", "--variance", "--unwarp", "--max-depth", "9"];
+    let more = ["--seed", "5", "--variance", "--max-depth", "9"];
     assert_done(&render(folder.path(), "path", &[&PATH[..], &more].concat()));
     let few = ["--passes", "2", "--no-pictures", "--kernel", "2d", "--set", "fog.albedo=0.5"];
     assert_done(&render(folder.path(), "beams", &[&FEW[..], &few].concat()));
@@ -120,6 +120,134 @@ fn cubes_of_others_meet_results_of_ours() {
     let output = tpb(folder.path(), ["compare", "path", "other.npy"]);
     let parts = ["path/transient.npz has (10, 12, 40, 1)", "other.npy has (12, 10, 40, 1)"];
     assert_refused(&output, &parts);
+}
+
+/// The numbers of a comparison without a page.
+fn numbers(folder: &Path, arguments: &[&str]) -> Value {
+    let output = tpb(folder, [&["compare", "--json", "--no-page"], arguments].concat());
+    assert_done(&output);
+    serde_json::from_str(&stdout(&output)).unwrap()
+}
+
+/// Regression: a long reference of the same seed contains the passes of what it judges, and nothing
+/// was said.
+#[test]
+fn results_that_share_random_numbers_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = |name: &str, passes: &str, seed: &str| {
+        let options = ["--method", "path", "--passes", passes, "--seed", seed];
+        let more = ["--no-pictures", "--variance", "--set", "sensor.film.bin_width_opl=0.35"];
+        assert_done(&render(folder.path(), name, &[&options[..], &more].concat()));
+    };
+    made("short", "2", "0");
+    made("long", "3", "0");
+    made("other", "3", "1");
+    let shared = numbers(folder.path(), &["long", "short"]);
+    let result = &shared["results"][0];
+    assert!(result["remarks"][0].as_str().unwrap().contains("same random passes"), "{shared:#}");
+    assert!(result["cube"]["noise"].is_null() && result["cube"]["bias_half"].is_null());
+    assert!(result["cube"]["nmse"].is_number());
+    let apart = numbers(folder.path(), &["other", "short"]);
+    let result = &apart["results"][0];
+    assert!(result["cube"]["noise"].is_number() && result["remarks"] == serde_json::json!([]));
+    // The page says it, too, and knows the passes: quantiles for 2 and 1 degrees of freedom.
+    assert_done(&tpb(folder.path(), ["compare", "long", "short"]));
+    let page = manifest(&folder.path().join("compare-long-short.html"));
+    let [long, short] = &page["methods"].as_array().unwrap()[..] else { panic!("two methods") };
+    assert_eq!((&long["independent"], &short["independent"]), (&true.into(), &false.into()));
+    assert_eq!((&long["batches"], &short["batches"]), (&3.into(), &2.into()));
+    for (method, exact) in [(long, 4.302_653), (short, 12.706_205)] {
+        assert!((method["interval"].as_f64().unwrap() - exact).abs() < 1e-5, "{method:#}");
+    }
+}
+
+/// Regression: unwarped times were compared with others, pulses with other pulses.
+#[test]
+fn other_zeros_of_time_and_other_pulses_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = |name: &str, more: &[&str]| {
+        assert_done(&render(folder.path(), name, &[&PATH[..], more].concat()));
+    };
+    made("plain", &[]);
+    made("unwarped", &["--unwarp", "--seed", "1"]);
+    made("wide", &["--pulse", "gaussian:500ps", "--seed", "1"]);
+    for results in [["plain", "unwarped"], ["unwarped", "plain"]] {
+        let output = tpb(folder.path(), [&["compare"][..], &results].concat());
+        let parts =
+            ["unwarped was rendered with --unwarp, plain without", "tpb render", "--seed 0 "];
+        assert_refused(&output, &parts);
+    }
+    let output = tpb(folder.path(), ["compare", "plain", "wide"]);
+    assert_refused(&output, &["plain has the pulse delta, wide has gaussian", "--pulse"]);
+    write_npy(&folder.path().join("other.npy"), "(10, 12, 40)", &vec![1e-4; 4800]);
+    let found = numbers(folder.path(), &["unwarped", "other.npy"]);
+    let remarks = found["results"][0]["remarks"].to_string();
+    assert!(remarks.contains("no report tells"), "{remarks}");
+    // How it was rendered is on the page.
+    assert_done(&tpb(folder.path(), ["view", "unwarped"]));
+    let page = manifest(&folder.path().join("unwarped.html"));
+    let method = &page["methods"][0];
+    assert!(method["provenance"].to_string().contains("without the leg from the eye"));
+    assert!(method["command"].as_str().unwrap().contains(" --unwarp"));
+}
+
+/// Regression: a few pixels that see a lamp ruled all numbers, unsaid.
+#[test]
+fn pixels_that_rule_are_named_and_others_judged_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let cube = |name: &str, lamp: f32, rest: f32| {
+        let cell = |at: usize| if at / 2 == 21 { lamp } else { rest };
+        let cells: Vec<f32> = (0..800).map(cell).collect();
+        write_npy(&folder.path().join(name), "(20, 20, 2)", &cells);
+    };
+    cube("truth.npy", 1000.0, 1.0);
+    cube("a.npy", 1000.0, 1.5);
+    let mask: Vec<f32> = (0..400).map(|pixel| f32::from(u8::from(pixel != 21))).collect();
+    write_npy(&folder.path().join("mask.npy"), "(20, 20)", &mask);
+    let found = numbers(folder.path(), &["truth.npy", "a.npy"]);
+    let notes = found["notes"].to_string();
+    for part in ["4 of 400 pixels", "hold 100.0 %", "--mask"] {
+        assert!(notes.contains(part), "{part} is missing in {notes}");
+    }
+    assert!(found["results"][0]["cube"]["nmse"].as_f64() < Some(1e-3));
+    assert!(found["mask"].is_null() && found["results"][0].get("masked_cube").is_none());
+
+    let masked = ["compare", "truth.npy", "a.npy", "--mask", "mask.npy"];
+    let found = numbers(folder.path(), &masked[1..]);
+    let nmse = found["results"][0]["masked_cube"]["nmse"].as_f64().unwrap();
+    assert!((nmse - 0.25).abs() < 1e-12, "{nmse}");
+    assert_eq!(found["results"][0]["masked_steady"]["bias"], 0.5);
+    assert_eq!(found["mask"]["pixels"], 399);
+    let output = tpb(folder.path(), masked);
+    assert_done(&output);
+    let text = stdout(&output);
+    for part in ["cells in mask", "steady in mask", "pixels in mask.npy: 399 of 400"] {
+        assert!(text.contains(part), "{part} is missing in\n{text}");
+    }
+    assert!(!text.contains("sum r2"), "no few of them rule:\n{text}");
+    let page = manifest(&folder.path().join("compare-truth-a.html"));
+    assert_eq!(page["judged_label"], "pixels in mask.npy");
+    assert_eq!(page["methods"][1]["numbers"]["judged_cube"]["nmse"], nmse);
+    let refused = |mask: &str| tpb(folder.path(), ["compare", "a.npy", "a.npy", "--mask", mask]);
+    assert_refused(&refused("a.npy"), &["a.npy", "(rows, columns)"]);
+    assert_refused(&refused("nowhere.npy"), &["nowhere.npy"]);
+}
+
+/// Regression: the steady image of all time was compared with another program's sum of bins.
+#[test]
+fn steady_images_are_of_the_window_if_the_other_knows_no_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let half = ["--set", "sensor.film.bin_width_opl=0.2"];
+    assert_done(&render(folder.path(), "path", &[&PATH[..], &half].concat()));
+    let arrays = tpb_film::Arrays::read_npz(&folder.path().join("path/transient.npz")).unwrap();
+    let outside: f64 = arrays.before.iter().chain(&arrays.after).sum();
+    let all: f64 = arrays.steady.iter().sum();
+    assert!((1e-3..0.999).contains(&(outside / all)), "light within the window and outside");
+    write_npy(&folder.path().join("same.npy"), "(10, 12, 40)", &arrays.transient);
+    let found = numbers(folder.path(), &["path", "same.npy"]);
+    assert_eq!(found["results"][0]["steady"]["rmse"], 0.0, "{found:#}");
+    let remarks = found["reference"]["remarks"].to_string();
+    assert!(remarks.contains("arrives outside the window"), "{remarks}");
 }
 
 #[test]

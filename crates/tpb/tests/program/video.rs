@@ -195,6 +195,19 @@ fn pulses_keep_the_energy_and_continuous_light_adds_up() {
     assert!((found / total - 1.0).abs() < 0.01, "{found} of {total}");
 }
 
+/// Regression: uneven bins were spread by the kernel of their mean width.
+#[test]
+fn a_pulse_needs_bins_of_one_width() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut arrays = cube();
+    arrays.opl_edges[20] += 0.01;
+    arrays.write_npz(&folder.path().join("cube.npz")).unwrap();
+    for pulse in ["gaussian:200ps", "box:200ps"] {
+        assert_refused(&video(folder.path(), &["--pulse", pulse]), &["--pulse", "one width"]);
+    }
+    assert_done(&video(folder.path(), &["--pulse", "continuous"]));
+}
+
 #[test]
 fn a_pulse_that_lacks_light_from_outside_says_so() {
     let folder = tempfile::tempdir().unwrap();
