@@ -74,7 +74,8 @@ function syncControls(v) {
   if (v.bins > 0) {
     const bin = v.binOfAll(state.bin);
     time.setAttribute("aria-valuetext", v.manifest.timed ? `${bin}, ${v.timeOfBin(state.bin)}` : bin);
-    byId("time-text").textContent = v.manifest.timed ? `${v.timeOfBin(state.bin)} · ${bin}` : bin;
+    const parts = v.manifest.timed ? [`${v.timeOfBin(state.bin)} · `] : [];
+    byId("time-text").replaceChildren(...parts, element("span", { text: bin }));
   }
   byId("play").textContent = state.playing ? "Pause" : "Play";
   byId("exposure").value = String(state.exposure);
