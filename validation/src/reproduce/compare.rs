@@ -5,13 +5,12 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::factor::{Factor, Winner};
 use super::halves::HalfCube;
 use super::judge::Products;
 use super::race::{Replicate, Spent};
 use super::truth::{Kind, Truth};
 use crate::error::{Result, ValidationError};
-use crate::statistics::{Gram, ReferenceNoise, Split};
+use crate::statistics::{Factor, Gram, ReferenceNoise, Split, Winner};
 
 /// Confidence of all intervals.
 pub const CONFIDENCE: f64 = 0.95;

@@ -12,7 +12,7 @@
 //! | --- | --- |
 //! | [`mod@reference`], [`truth`] | the long render and its own noise |
 //! | [`race`], [`halves`] | renders at equal time, and how they are kept |
-//! | [`contest`], [`judge`], [`compare`], [`factor`] | errors, their parts, their ratios |
+//! | [`contest`], [`judge`], [`compare`] | errors, their parts, their ratios |
 //! | [`maps`], [`charts`], [`picture`], [`colour`], [`page`] | what is looked at |
 //! | [`summary`] | the pages over all scenes, and the table of who wins where |
 
@@ -21,7 +21,6 @@ pub mod colour;
 pub mod compare;
 pub mod contest;
 pub mod cornell;
-pub mod factor;
 pub mod halves;
 pub mod judge;
 pub mod maps;

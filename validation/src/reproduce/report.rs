@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::compare::Comparison;
-use super::factor::Winner;
 use super::page::Page;
 use super::{charts, tables, write_text};
 use crate::error::Result;
+use crate::statistics::Winner;
 use crate::suite::Circumstances;
 
 /// Tables: by render time, by window of time, by kind of cell, and who wins which bins.

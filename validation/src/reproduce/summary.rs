@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::compare::Comparison;
 use super::cornell::{self, CornellResult};
-use super::factor::Winner;
 use super::mirrors::{self, MirrorsResult};
 use super::page::Page;
 use super::{report, tables, write_json, write_text};
 use crate::error::Result;
+use crate::statistics::{Factor, Winner};
 use crate::suite::Circumstances;
 
 /// Where each scene's files are.
@@ -141,7 +141,7 @@ impl Summary {
 
 fn factor(comparison: &Comparison) -> String {
     let whole = comparison.whole();
-    let text = |f: Option<super::factor::Factor>| f.map_or("—".to_owned(), |f| f.text());
+    let text = |f: Option<Factor>| f.map_or("—".to_owned(), |f| f.text());
     format!("{} (all pixels: {})", text(whole.factor), text(whole.factor_whole))
 }
 

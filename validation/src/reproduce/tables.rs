@@ -1,8 +1,8 @@
 //! Numbers of a comparison as rows of tables.
 
 use super::compare::{AtTime, Comparison, Part};
-use super::factor::Winner;
 use crate::statistics::split::Estimate;
+use crate::statistics::{Factor, Winner};
 
 /// `1.2e-3 [1.0e-3, 1.4e-3]`.
 pub(crate) fn interval(estimate: &Estimate) -> String {
@@ -45,7 +45,7 @@ pub(crate) fn by_time(comparison: &Comparison) -> Vec<Vec<String>> {
 
 fn factor_row(time: &AtTime) -> Vec<String> {
     let text =
-        |factor: Option<super::factor::Factor>| factor.map_or("—".to_owned(), |f| f.text());
+        |factor: Option<Factor>| factor.map_or("—".to_owned(), |f| f.text());
     let mut row = vec![format!("{:.3} s, times less error", time.seconds)];
     row.extend((0..3).map(|_| String::new()));
     row.push(text(time.factor));

@@ -9,7 +9,8 @@
 //!   (significant after Holm), *equivalent* (every confidence interval within the margin), or
 //!   *unresolved* (too noisy to tell, which is a failure for lack of power, never a pass).
 //! * [`mod@chi_square`]: histograms against densities.
-//! * [`ratio`] and [`bootstrap`]: how many times better one method is than another.
+//! * [`ratio`] (by the delta method, and Fieller's) and [`bootstrap`] (of medians): how many times
+//!   better one method is than another.
 //! * [`split`]: the error of a cube, split into variance and squared bias without bias.
 //!
 //! No variance is ever raised to a floor. Every verdict carries its false-alarm probability: how
@@ -29,7 +30,7 @@ pub use agreement::{Contrast, Criterion, Finding, Judgement, Target, judge};
 pub use batches::Batches;
 pub use chi_square::{ChiSquare, chi_square};
 pub use multiple::{holm, sidak};
-pub use ratio::{RatioInterval, ratio_of_means};
+pub use ratio::{Factor, RatioInterval, Winner, ratio_of_means};
 pub use split::{Gram, ReferenceNoise, Split};
 
 /// The larger of two errors; a NaN is worse than any.

@@ -14,6 +14,7 @@ use super::super::picture::Picture;
 use super::super::{bin_of, report};
 use super::{CornellResult, Shown};
 use crate::error::{Result, ValidationError};
+use crate::statistics::Factor;
 
 /// Between pictures of a grid.
 const GAP: usize = 4;
@@ -63,7 +64,7 @@ pub(super) fn write(out: &Path, result: &CornellResult, shown: &Shown<'_>) -> Re
 
 fn introduction(page: &mut Page, comparison: &Comparison) {
     let whole = comparison.whole();
-    let factor = |f: Option<super::super::factor::Factor>| {
+    let factor = |f: Option<Factor>| {
         f.map_or("an unresolved number of".to_owned(), |f| f.text())
     };
     page.text(&format!(

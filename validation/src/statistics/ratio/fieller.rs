@@ -1,7 +1,7 @@
-//! How many times less error one method has than another, with its interval.
+//! The ratio of two estimates by Fieller's theorem.
 //!
 //! The ratio A/B of two estimates a, b with independent errors s_a, s_b and Student's t: Fieller
-//! (1954). The ends of its interval are the roots ρ of (a − ρb)² = t²(s_a² + ρ²s_b²). If b is not
+//! (J. R. Stat. Soc. B 16, 1954). The ends of its interval are the roots ρ of (a − ρb)² = t²(s_a² + ρ²s_b²). If b is not
 //! resolved from 0, b² ≤ t²s_b², there is no upper end; where a is not, the lower end is at most 0
 //! and is given as 0, since errors are not negative. Both estimates hold the reference's noise,
 //! which they share: the interval leaves that out, which makes it too wide, not too narrow, where

@@ -1,4 +1,4 @@
-//! The ratio of two mean errors, with its confidence interval.
+//! The ratio of two mean errors by the delta method.
 //!
 //! On the logarithm: ln(ā/b̄) has the standard error √(s_a²/ā² + s_b²/b̄²) by the delta method, s
 //! being the standard errors of the means, and is compared with Student's t of the
@@ -7,8 +7,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::batches::summarise;
-use super::student;
+use crate::statistics::batches::summarise;
+use crate::statistics::student;
 
 /// A ratio of means.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
