@@ -24,6 +24,9 @@ pub enum ValidationError {
         #[source]
         source: std::io::Error,
     },
+    /// The task was ended by the person who runs it; what was finished is kept.
+    #[error("interrupted; what was finished is kept, and the same command goes on there")]
+    Interrupted,
     /// A file holds something else than it should, or a tool refused its input.
     #[error("{what}: {reason}")]
     Unusable {

@@ -10,7 +10,7 @@ use tpb_light::LightOptions;
 use tpb_optics::{Coefficients, Spectrum};
 use tpb_path::PathOptions;
 use tpb_render::{Budget, RunSettings};
-use tpb_scene::{Bsdf, EmitterKind, Plan, Reflector, Scene};
+use tpb_scene::{Bsdf, EmitterKind, Plan, Reflector, Scene, Transport};
 
 use crate::cube::dilate;
 use crate::error::Result;
@@ -39,6 +39,17 @@ impl Referee {
         match self {
             Self::Path => Estimator::Path(PathOptions::default()),
             Self::Light => Estimator::Light(LightOptions::default()),
+        }
+    }
+
+    /// [`Referee::judged`] with as many channels as the scene needs.
+    ///
+    /// # Errors
+    /// [`crate::ValidationError`] if the scene cannot be rendered.
+    pub fn judged_of(self, scene: &Scene) -> Result<Vec<bool>> {
+        match Plan::new(scene, &scene.integrator).transport {
+            Transport::Mono => self.judged::<1>(scene),
+            Transport::Rgb => self.judged::<3>(scene),
         }
     }
 
@@ -106,8 +117,8 @@ fn without_scattering(scene: &Scene) -> Scene {
     scene
 }
 
-/// Pixels within one pixel of which neither a mirror nor glass is seen.
-fn sees_no_mirror(scene: &Scene) -> Vec<bool> {
+/// Pixels within one pixel of which neither a mirror nor glass is seen, row by row.
+pub fn sees_no_mirror(scene: &Scene) -> Vec<bool> {
     let (width, height) = (scene.film.width, scene.film.height);
     let seen: Vec<bool> = (0..width * height).map(|pixel| !is_plain(scene, pixel)).collect();
     dilate(&seen, width, height).into_iter().map(|near| !near).collect()

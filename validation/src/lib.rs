@@ -8,8 +8,9 @@
 //! * [`cube`], [`contrasts`], [`measure`], [`comparison`]: time-resolved images as numbers, reduced to the few
 //!   that are judged, batch by batch.
 //! * [`memory`]: renders that are wanted again; [`microfacet`]: rough surfaces in textbook form.
-//! * [`equal_time`], [`reference_cube`]: methods against each other at equal time, and the long
-//!   render that both are compared with; [`judged`]: by whom, and in which pixels.
+//! * [`equal_time`]: methods against each other at equal time; [`judged`]: by whom, and in which
+//!   pixels. [`long_render`]: the long render that they are compared with; [`reference_cube`]: the
+//!   small file that ships of it. [`watch`]: who follows what takes long, and may end it.
 //! * [`run_time`]: how the error of a method falls with the time it is given.
 //! * [`gallery`]: scenes that show what the renderer can do, and the page of them.
 //! * [`reproduce`]: the source's figures made again, with errors.
@@ -29,6 +30,7 @@ pub mod experiments;
 pub mod gallery;
 pub mod history;
 pub mod judged;
+pub mod long_render;
 pub mod matrix;
 pub mod measure;
 pub mod memory;
@@ -45,6 +47,7 @@ pub mod statistics;
 pub mod stress;
 pub mod suite;
 pub mod taps;
+pub mod watch;
 
 pub use error::{Result, ValidationError};
 pub use tpb_render::with_threads;

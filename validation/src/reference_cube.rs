@@ -1,7 +1,7 @@
-//! The long render that methods are compared with: making, keeping and reading it.
+//! The long render that methods are compared with, small enough to ship.
 //!
-//! A reference cube is the mean of many passes of an unbiased method. It is kept small
-//! enough to ship: half floats, with a scale of its own for each frame so that dark frames keep
+//! A reference cube is the mean over channels of a long render of an unbiased method
+//! ([`crate::long_render`]), and what that tells of its own noise: half floats, with a scale of its own for each frame so that dark frames keep
 //! their digits, compressed. What the rounding adds is known exactly when the file is made, and it
 //! is counted as variance. NumPy reads the file:
 //!
@@ -22,20 +22,23 @@ use std::time::Duration;
 use half::f16;
 use serde::{Deserialize, Serialize};
 use tpb_film::archive::{ArchiveReader, ArchiveWriter, Compression};
-use tpb_film::{FilmOptions, TransientFilm, atomic_write};
-use tpb_render::{Budget, RunSettings, Stopwatch, run};
+use tpb_film::atomic_write;
 use tpb_scene::load::LoadedScene;
-use tpb_scene::{Plan, Transport};
 
 use crate::cube::Cube;
 use crate::error::{Result, ValidationError};
 use crate::experiment::Context;
 use crate::judged::Referee;
-use crate::measure::layout;
+use crate::long_render::{LongMean, LongRender};
 use crate::statistics::ReferenceNoise;
+use crate::watch::Watch;
 
 /// Half floats use this much of their range.
 const LARGEST: f64 = 32_768.0;
+
+/// Batches of a reference that ships, and the fewest.
+const BATCHES: u32 = 32;
+const FEWEST: u64 = 8;
 
 /// Where a reference comes from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -84,17 +87,52 @@ pub struct ReferenceCube {
 
 impl ReferenceCube {
     /// Renders a reference for `time`.
+    ///
+    /// # Errors
+    /// Those of [`LongRender::make`].
     pub fn make(
         scene: &LoadedScene,
         referee: Referee,
         time: Duration,
         seed: u64,
         commit: &str,
+        watch: &mut Watch<'_>,
     ) -> Result<Self> {
-        match Plan::new(&scene.scene, &scene.scene.integrator).transport {
-            Transport::Mono => make::<1>(scene, referee, time, seed, commit),
-            Transport::Rgb => make::<3>(scene, referee, time, seed, commit),
+        let reference = LongRender::reference(scene, referee, time, seed, commit);
+        let made = LongRender { batches: BATCHES, fewest: FEWEST, ..reference }.make(watch)?;
+        Ok(Self::of_long(&made))
+    }
+
+    /// What is kept of a long render.
+    pub fn of_long(long: &LongMean) -> Self {
+        let cube = Cube::of(&long.arrays);
+        let mut variance_pixel = vec![0.0; cube.pixels()];
+        let mut variance_frame = vec![0.0; cube.bins];
+        for (index, &variance) in long.mean_variance.iter().enumerate() {
+            let (pixel, bin) = (index / cube.bins, index % cube.bins);
+            variance_pixel[pixel] += f64::from(variance);
+            if long.judged[pixel] {
+                variance_frame[bin] += f64::from(variance);
+            }
         }
+        let made = &long.made;
+        let provenance = Provenance {
+            program: concat!("tpb-validation ", env!("CARGO_PKG_VERSION")).into(),
+            commit: made.commits.join(", "),
+            method: made.method.clone(),
+            scene: made.scene.clone(),
+            seed: made.seed,
+            passes: made.batches * made.passes,
+            camera_paths: made.camera_paths,
+            wall_seconds: made.wall_seconds,
+            cpu_seconds: Some(made.cpu_seconds),
+        };
+        let mask = long.judged.clone();
+        let opl_edges = long.arrays.opl_edges.clone();
+        let mut reference =
+            Self { cube, mask, variance_pixel, variance_frame, opl_edges, provenance };
+        reference.round();
+        reference
     }
 
     /// The reference of a shipped scene: the one that ships with it, else the one that an earlier
@@ -117,8 +155,8 @@ impl ReferenceCube {
                 }
             }
         }
-        let reference =
-            Self::make(loaded, referee, time, context.seed ^ 0x5eed, "made for this run")?;
+        let (seed, commit) = (context.seed ^ 0x5eed, "made for this run");
+        let reference = Self::make(loaded, referee, time, seed, commit, &mut Watch::default())?;
         reference.write(&made)?;
         let note = format!("no reference was shipped: rendered one for {} s", time.as_secs());
         Ok((reference, Some(note)))
@@ -239,58 +277,6 @@ impl ReferenceCube {
             }
         }
     }
-}
-
-fn make<const C: usize>(
-    loaded: &LoadedScene,
-    referee: Referee,
-    time: Duration,
-    seed: u64,
-    commit: &str,
-) -> Result<ReferenceCube> {
-    let scene = &loaded.scene;
-    let plan = Plan::new(scene, &scene.integrator);
-    let started = Stopwatch::start();
-    let method = referee.estimator().prepare::<C>(scene, &plan, scene.integrator)?;
-    let options = FilmOptions { variance: true, ..FilmOptions::default() };
-    let mut film = TransientFilm::<C>::new(layout(&scene.film, 0.0)?, options)?;
-    let settings = RunSettings { seed, budget: Budget::Time(time), first_pass: 0 };
-    let summary = run(&*method, &mut film, &settings, &started, &mut ());
-    let arrays = film.develop();
-    let Some(variance) = &arrays.variance else {
-        let reason = "a reference needs a time axis and at least two passes";
-        return Err(ValidationError::unusable("reference render", reason));
-    };
-    let mask = referee.judged::<C>(scene)?;
-    let channels = arrays.channels;
-    let cube = Cube::of(&arrays);
-    let mut variance_pixel = vec![0.0; cube.pixels()];
-    let mut variance_frame = vec![0.0; cube.bins];
-    for (index, cell) in variance.chunks_exact(channels).enumerate() {
-        let (pixel, bin) = (index / cube.bins, index % cube.bins);
-        // Of the mean over channels, if they are fully correlated.
-        let root: f64 = cell.iter().map(|&v| f64::from(v).sqrt()).sum::<f64>() / channels as f64;
-        variance_pixel[pixel] += root * root;
-        if mask[pixel] {
-            variance_frame[bin] += root * root;
-        }
-    }
-    let provenance = Provenance {
-        program: concat!("tpb-validation ", env!("CARGO_PKG_VERSION")).into(),
-        commit: commit.into(),
-        method: method.name().into(),
-        scene: loaded.canonical.clone(),
-        seed,
-        passes: summary.passes,
-        camera_paths: summary.counts.camera_paths,
-        wall_seconds: summary.wall_seconds,
-        cpu_seconds: summary.cpu_seconds,
-    };
-    let opl_edges = arrays.opl_edges;
-    let mut reference =
-        ReferenceCube { cube, mask, variance_pixel, variance_frame, opl_edges, provenance };
-    reference.round();
-    Ok(reference)
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 use tpb_validation::reproduce::summary::Summary;
 use tpb_validation::reproduce::{Options, cornell, mirrors};
 use tpb_validation::suite;
+use tpb_validation::watch::Watch;
 use tpb_validation::{ValidationError, with_threads};
 
 use crate::circumstances;
@@ -86,11 +87,11 @@ pub(crate) fn run(args: &ReproduceArgs) -> Outcome {
     };
     let scenes = |options: &Options| -> Result<Summary, ValidationError> {
         if args.which != Which::Mirrors {
-            cornell::run(options, &mut say)?;
+            cornell::run(options, &mut Watch::new(&mut |line: &str| say(line)))?;
             finish(options)?;
         }
         if args.which != Which::CornellBlocks {
-            mirrors::run(options, &mut say)?;
+            mirrors::run(options, &mut Watch::new(&mut |line: &str| say(line)))?;
         }
         finish(options)
     };

@@ -11,6 +11,7 @@ use tpb_validation::experiment::{Context, Effort, Experiment};
 use tpb_validation::judged::Referee;
 use tpb_validation::reference_cube::ReferenceCube;
 use tpb_validation::suite::SuiteResult;
+use tpb_validation::watch::Watch;
 use tpb_validation::{history, registry, report, scenes, suite, with_threads};
 
 use crate::circumstances::{self, commit};
@@ -150,7 +151,9 @@ pub(crate) fn reference_render(args: &ReferenceRenderArgs) -> Outcome {
     let out = args.out.clone().unwrap_or_else(|| context.reference_path(&args.scene));
     say(&format!("rendering the reference of {} for {} s", args.scene, args.time));
     let made = with_threads(args.threads, || {
-        ReferenceCube::make(&loaded, Referee::Path, time, args.seed, &commit())
+        let mut tell = |line: &str| say(line);
+        let mut watch = Watch::new(&mut tell);
+        ReferenceCube::make(&loaded, Referee::Path, time, args.seed, &commit(), &mut watch)
     })??;
     made.write(&out)?;
     let noise = made.noise(|pixel| made.mask[pixel]);

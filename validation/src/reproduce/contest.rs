@@ -16,11 +16,13 @@ use tpb_scene::{IntegratorSpec, Plan, Transport};
 
 use super::compare::{Comparison, Maps};
 use super::race::{Race, Replicate};
-use super::reference::LongReference;
 use super::truth::Truth;
 use crate::error::Result;
+use crate::judged::Referee;
+use crate::long_render::LongRender;
 use crate::measure::{Estimator, layout, render};
 use crate::reference_cube::ReferenceCube;
+use crate::watch::Watch;
 
 /// The film is read at these parts of the time.
 const READINGS: [f64; 3] = [0.25, 0.5, 1.0];
@@ -79,11 +81,11 @@ impl Contest<'_> {
     ///
     /// # Errors
     /// If a kept file is broken, the folder cannot be written, or the reference is too noisy.
-    pub fn run(&self, say: &mut dyn FnMut(&str)) -> Result<Contested> {
+    pub fn run(&self, watch: &mut Watch<'_>) -> Result<Contested> {
         let methods = methods();
         let times: Vec<Duration> = READINGS.iter().map(|&part| self.time.mul_f64(part)).collect();
-        let runs = self.race(&methods, times.clone()).run(say)?;
-        let mut truth = self.truth(say)?;
+        let runs = self.race(&methods, times.clone()).run(watch)?;
+        let mut truth = self.truth(watch)?;
         let direct = direct_light(self.absorbing, self.time.mul_f64(DIRECT), self.seed)?;
         truth.sort_cells(&direct)?;
         let seconds: Vec<f64> = times.iter().map(Duration::as_secs_f64).collect();
@@ -112,12 +114,13 @@ impl Contest<'_> {
         }
     }
 
-    fn truth(&self, say: &mut dyn FnMut(&str)) -> Result<Truth> {
+    fn truth(&self, watch: &mut Watch<'_>) -> Result<Truth> {
         match &self.judge {
             Judge::Rendered { path, time } => {
                 let seed = self.seed ^ 0x5eed_0000;
-                let made = LongReference::obtain(self.loaded, path, *time, seed, self.commit, say)?;
-                Ok(Truth::of_long(made))
+                let reference =
+                    LongRender::reference(self.loaded, Referee::Path, *time, seed, self.commit);
+                Ok(Truth::of_long(reference.obtain(path, watch)?))
             }
             Judge::Shipped(path) => {
                 let reference = ReferenceCube::read(path)?;

@@ -18,6 +18,7 @@ use super::race::first_with_variance;
 use super::{Options, folder, load, write_json};
 use crate::error::Result;
 use crate::suite::Circumstances;
+use crate::watch::Watch;
 
 /// Its name, in files and pages.
 pub const NAME: &str = "cornell-blocks";
@@ -44,11 +45,11 @@ pub struct CornellResult {
 /// # Errors
 /// If a scene or a kept file is broken, the folder cannot be written, or the reference is too noisy
 /// to compare with.
-pub fn run(options: &Options, say: &mut dyn FnMut(&str)) -> Result<CornellResult> {
+pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<CornellResult> {
     let out = options.out.join(NAME);
     folder(&out)?;
-    let precise = if options.is_trial() { None } else { Some(precise(options, &out, say)?) };
-    say(&format!("{NAME}: path and beams at equal time, at picture quality"));
+    let precise = if options.is_trial() { None } else { Some(precise(options, &out, watch)?) };
+    watch.tell(&format!("{NAME}: path and beams at equal time, at picture quality"));
     let loaded = options.load(NAME, &[])?;
     let absorbing = options.load(NAME, &["fog.albedo=0"])?;
     let reference = options.reference(&out);
@@ -63,7 +64,7 @@ pub fn run(options: &Options, say: &mut dyn FnMut(&str)) -> Result<CornellResult
         windows: &WINDOWS,
         folder: out.join("replicates"),
     };
-    let contested = contest.run(say)?;
+    let contested = contest.run(watch)?;
     let result = CornellResult {
         circumstances: options.circumstances.clone(),
         command: options.command.clone(),
@@ -71,10 +72,10 @@ pub fn run(options: &Options, say: &mut dyn FnMut(&str)) -> Result<CornellResult
         precise,
     };
     write_json(&out.join("result.json"), &result)?;
-    say("  pictures and pages");
+    watch.tell("  pictures and pages");
     pages::write(&out, &result, &Shown { reference: &reference, contested: &contested })?;
     contest.clear()?;
-    say(&format!("  wrote {}", out.join("index.html").display()));
+    watch.tell(&format!("  wrote {}", out.join("index.html").display()));
     Ok(result)
 }
 
@@ -95,8 +96,8 @@ impl Shown<'_> {
 }
 
 /// The same comparison at 64x64 pixels and 200 bins, against the reference that ships.
-fn precise(options: &Options, out: &Path, say: &mut dyn FnMut(&str)) -> Result<Comparison> {
-    say(&format!("{NAME}: path and beams at equal time, at 64x64x200"));
+fn precise(options: &Options, out: &Path, watch: &mut Watch<'_>) -> Result<Comparison> {
+    watch.tell(&format!("{NAME}: path and beams at equal time, at 64x64x200"));
     let data = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let scene = data.join("scenes").join(format!("{NAME}.json"));
     let (loaded, absorbing) = (load(&scene, &[])?, load(&scene, &["fog.albedo=0".to_owned()])?);
@@ -111,7 +112,7 @@ fn precise(options: &Options, out: &Path, say: &mut dyn FnMut(&str)) -> Result<C
         windows: &WINDOWS,
         folder: out.join("replicates-precise"),
     };
-    let comparison = contest.run(say)?.comparison;
+    let comparison = contest.run(watch)?.comparison;
     write_json(&out.join("precise.json"), &comparison)?;
     contest.clear()?;
     Ok(comparison)

@@ -27,6 +27,7 @@ use super::{Options, folder, write_json};
 use crate::error::{Result, ValidationError};
 use crate::measure::{Estimator, layout};
 use crate::suite::Circumstances;
+use crate::watch::Watch;
 use caustics::{Caustics, CausticsPlan};
 use delay::Delay;
 use room::{Event, Room};
@@ -73,29 +74,29 @@ pub struct MirrorsResult {
 /// # Errors
 /// If a scene or a kept file is broken, the folder cannot be written, or something cannot be
 /// measured.
-pub fn run(options: &Options, say: &mut dyn FnMut(&str)) -> Result<MirrorsResult> {
+pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<MirrorsResult> {
     let out = options.out.join(NAME);
     folder(&out)?;
     let loaded = options.load(NAME, &[])?;
     let room = Room::of(&loaded)?;
-    say(&format!("{NAME}: the delay behind the ball"));
-    let delays = delay::measure(options, &room, say)?;
+    watch.tell(&format!("{NAME}: the delay behind the ball"));
+    let delays = delay::measure(options, &room, watch)?;
     write_json(&out.join("delay.json"), &delays)?;
-    say(&format!("{NAME}: caustics of {TWIN} by three methods"));
+    watch.tell(&format!("{NAME}: caustics of {TWIN} by three methods"));
     let small = small(options);
-    let (twin, arrays) = caustics(&small, TWIN, &room, CAUSTICS, say)?;
+    let (twin, arrays) = caustics(&small, TWIN, &room, CAUSTICS, watch)?;
     write_json(&out.join("caustics-area.json"), &twin)?;
     pages::caustics_viewer(&out, &small, &twin, &arrays)?;
     drop(arrays);
-    say(&format!("{NAME}: caustics of the point lamp"));
-    let (point, _) = caustics(&small, NAME, &room, CAUSTICS_POINT, say)?;
+    watch.tell(&format!("{NAME}: caustics of the point lamp"));
+    let (point, _) = caustics(&small, NAME, &room, CAUSTICS_POINT, watch)?;
     write_json(&out.join("caustics-point.json"), &point)?;
-    let equal_time = equal_time(&small, &out, say)?;
+    let equal_time = equal_time(&small, &out, watch)?;
     write_json(&out.join("equal-time.json"), &equal_time)?;
-    say(&format!("{NAME}: the sequence, by photon beams"));
+    watch.tell(&format!("{NAME}: the sequence, by photon beams"));
     let methods = [Estimator::Beams(BeamOptions::default())];
     let race = sequence(options, &loaded, &methods, &out);
-    let found = race.run(say)?;
+    let found = race.run(watch)?;
     let replicate = &found[0][0];
     let arrays = replicate.arrays(&blank(&loaded)?)?;
     let result = MirrorsResult {
@@ -109,10 +110,10 @@ pub fn run(options: &Options, say: &mut dyn FnMut(&str)) -> Result<MirrorsResult
         equal_time,
     };
     write_json(&out.join("result.json"), &result)?;
-    say("  pictures and pages");
+    watch.tell("  pictures and pages");
     pages::write(&out, &result, arrays)?;
     race.clear()?;
-    say(&format!("  wrote {}", out.join("index.html").display()));
+    watch.tell(&format!("  wrote {}", out.join("index.html").display()));
     Ok(result)
 }
 
@@ -148,17 +149,17 @@ fn caustics(
     scene: &str,
     room: &Room,
     part: f64,
-    say: &mut dyn FnMut(&str),
+    watch: &mut Watch<'_>,
 ) -> Result<(Caustics, Vec<Arrays>)> {
     let loaded = options.load(scene, &[])?;
     let time: Duration = options.time.mul_f64(part);
     let plan =
         CausticsPlan { name: scene, loaded: &loaded, room, time, seed: options.circumstances.seed };
-    plan.run(say)
+    plan.run(watch)
 }
 
-fn equal_time(options: &Options, out: &Path, say: &mut dyn FnMut(&str)) -> Result<Comparison> {
-    say(&format!("{TWIN}: path and beams at equal time"));
+fn equal_time(options: &Options, out: &Path, watch: &mut Watch<'_>) -> Result<Comparison> {
+    watch.tell(&format!("{TWIN}: path and beams at equal time"));
     let (loaded, absorbing) = (options.load(TWIN, &[])?, options.load(TWIN, &["fog.albedo=0"])?);
     let contest = Contest {
         loaded: &loaded,
@@ -174,7 +175,7 @@ fn equal_time(options: &Options, out: &Path, say: &mut dyn FnMut(&str)) -> Resul
         windows: &WINDOWS,
         folder: out.join("replicates-area"),
     };
-    let comparison = contest.run(say)?.comparison;
+    let comparison = contest.run(watch)?.comparison;
     contest.clear()?;
     Ok(comparison)
 }

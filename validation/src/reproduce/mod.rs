@@ -10,7 +10,7 @@
 //!
 //! | module | subject |
 //! | --- | --- |
-//! | [`mod@reference`], [`truth`] | the long render and its own noise |
+//! | [`truth`] | the long render ([`crate::long_render`]) and its own noise, as errors need it |
 //! | [`race`], [`halves`] | renders at equal time, and how they are kept |
 //! | [`contest`], [`judge`], [`compare`] | errors, their parts, their ratios |
 //! | [`maps`], [`charts`], [`picture`], [`colour`], [`page`] | what is looked at |
@@ -28,7 +28,6 @@ pub mod mirrors;
 pub mod page;
 pub mod picture;
 pub mod race;
-pub mod reference;
 mod report;
 pub mod summary;
 mod tables;

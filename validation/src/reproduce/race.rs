@@ -25,6 +25,7 @@ use tpb_scene::{Plan, Transport};
 use super::halves::HalfCube;
 use crate::error::{Result, ValidationError};
 use crate::measure::{Estimator, layout};
+use crate::watch::Watch;
 
 /// What was spent until a film was read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -97,8 +98,8 @@ pub struct Race<'a> {
 }
 
 impl Race<'_> {
-    /// The replicates of each method; `say` is told of each.
-    pub fn run(&self, say: &mut dyn FnMut(&str)) -> Result<Vec<Vec<Replicate>>> {
+    /// The replicates of each method; `watch` is told of each.
+    pub fn run(&self, watch: &mut Watch<'_>) -> Result<Vec<Vec<Replicate>>> {
         fs::create_dir_all(&self.folder).map_err(|e| ValidationError::io(&self.folder, e))?;
         let mut all: Vec<Vec<Replicate>> = self.methods.iter().map(|_| Vec::new()).collect();
         for number in 0..self.replicates {
@@ -109,10 +110,13 @@ impl Race<'_> {
                 let key = self.key(estimator, seed);
                 let (record, how) = match read_record(&path).filter(|kept| kept.is_of(&key)) {
                     Some(record) => (record, "kept from an earlier run"),
-                    None => (self.render(estimator, key, &path)?, "done"),
+                    None => {
+                        watch.go_on()?;
+                        (self.render(estimator, key, &path)?, "done")
+                    }
                 };
                 let spent = record.spent.last().copied().unwrap_or_default();
-                say(&format!(
+                watch.tell(&format!(
                     "  {} {}/{}: {how}, {} passes, {:.1} s, {:.1} CPU s",
                     estimator.name(),
                     number + 1,

@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use super::reference::LongReference;
 use crate::error::{Result, ValidationError};
+use crate::long_render::LongMean;
 use crate::reference_cube::ReferenceCube;
 use crate::statistics::ReferenceNoise;
 
@@ -70,8 +70,8 @@ pub struct Truth {
 
 impl Truth {
     /// From a reference made in batches; it is used up.
-    pub fn of_long(reference: LongReference) -> Self {
-        let LongReference { arrays, mean_variance, window_variance, judged, made } = reference;
+    pub fn of_long(reference: LongMean) -> Self {
+        let LongMean { arrays, mean_variance, window_variance, judged, made } = reference;
         let channels = arrays.channels;
         let mean = |cell: &[f32]| cell.iter().sum::<f32>() / channels as f32;
         Self {

@@ -34,7 +34,7 @@ fn all_files_are_made_and_agree_with_each_other() {
     let options = trial("cornell");
     let _ = fs::remove_dir_all(&options.out);
     let mut told = Vec::new();
-    let result = run(&options, &mut |line| told.push(line.to_owned())).unwrap();
+    let result = run(&options, &mut Watch::new(&mut |line: &str| told.push(line.to_owned()))).unwrap();
     let out = options.out.join(NAME);
     for file in ["sequence.png", "steady.png", "viewer.html", "variance-beams.png", "bias-path.png"]
     {
@@ -75,7 +75,7 @@ fn all_files_are_made_and_agree_with_each_other() {
     let reference = || fs::metadata(out.join("reference-12-20.npz")).unwrap().modified().unwrap();
     let before = reference();
     told.clear();
-    run(&options, &mut |line| told.push(line.to_owned())).unwrap();
+    run(&options, &mut Watch::new(&mut |line: &str| told.push(line.to_owned()))).unwrap();
     assert_eq!(reference(), before);
     assert!(told.iter().any(|line| line.contains("are there already")), "{told:?}");
     fs::remove_dir_all(&options.out).unwrap();
@@ -96,15 +96,15 @@ fn an_interrupted_race_goes_on_and_a_folder_that_cannot_be_written_is_told_first
         commit: "test",
         folder: options.out.join("kept"),
     };
-    let first = race(2, 5).run(&mut |_| ()).unwrap();
+    let first = race(2, 5).run(&mut Watch::default()).unwrap();
     let mut told = Vec::new();
-    let more = race(3, 5).run(&mut |line| told.push(line.to_owned())).unwrap();
+    let more = race(3, 5).run(&mut Watch::new(&mut |line: &str| told.push(line.to_owned()))).unwrap();
     assert_eq!(more[0][..2], first[0][..]);
     let kept = told.iter().filter(|line| line.contains("kept from an earlier run")).count();
     assert_eq!((kept, told.len()), (2, 3));
     // Another seed is another race.
     told.clear();
-    race(2, 6).run(&mut |line| told.push(line.to_owned())).unwrap();
+    race(2, 6).run(&mut Watch::new(&mut |line: &str| told.push(line.to_owned()))).unwrap();
     assert!(told.iter().all(|line| line.contains("done")), "{told:?}");
     fs::remove_dir_all(&options.out).unwrap();
 
@@ -112,7 +112,7 @@ fn an_interrupted_race_goes_on_and_a_folder_that_cannot_be_written_is_told_first
     fs::write(&file, "in the way").unwrap();
     let blocked = Options { out: file.clone(), ..options };
     let mut told = 0;
-    let error = run(&blocked, &mut |_| told += 1).unwrap_err();
+    let error = run(&blocked, &mut Watch::new(&mut |_: &str| told += 1)).unwrap_err();
     assert!(error.to_string().contains("cannot access") && told == 0, "{error}");
     fs::remove_file(&file).unwrap();
 }

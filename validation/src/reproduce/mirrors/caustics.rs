@@ -25,6 +25,7 @@ use crate::judged::Referee;
 use crate::measure::{Estimator, layout, render};
 use crate::statistics::batches::{Summary, summarise};
 use crate::statistics::student;
+use crate::watch::Watch;
 
 /// Relative difference that is small enough.
 pub const MARGIN: f64 = 0.03;
@@ -126,16 +127,16 @@ impl CausticsPlan<'_> {
     ///
     /// # Errors
     /// If a method cannot render the scene.
-    pub fn run(&self, say: &mut dyn FnMut(&str)) -> Result<(Caustics, Vec<Arrays>)> {
+    pub fn run(&self, watch: &mut Watch<'_>) -> Result<(Caustics, Vec<Arrays>)> {
         match Plan::new(&self.loaded.scene, &self.loaded.scene.integrator).transport {
-            Transport::Mono => self.run_with::<1>(say),
-            Transport::Rgb => self.run_with::<3>(say),
+            Transport::Mono => self.run_with::<1>(watch),
+            Transport::Rgb => self.run_with::<3>(watch),
         }
     }
 
     fn run_with<const C: usize>(
         &self,
-        say: &mut dyn FnMut(&str),
+        watch: &mut Watch<'_>,
     ) -> Result<(Caustics, Vec<Arrays>)> {
         let scene = &self.loaded.scene;
         let plan = Plan::new(scene, &scene.integrator);
@@ -154,7 +155,7 @@ impl CausticsPlan<'_> {
             let Some(estimator) = Estimator::of_name(name) else { continue };
             let method = estimator.prepare::<C>(scene, &plan, scene.integrator)?;
             let made = self.batches(&*method, self.seed * 10 + index as u64, &regions)?;
-            say(&format!("  {name}: {} passes, {:.0} CPU s", made.passes, made.cpu_seconds));
+            watch.tell(&format!("  {name}: {} passes, {:.0} CPU s", made.passes, made.cpu_seconds));
             found.cpu_seconds.push(made.cpu_seconds);
             found.passes.push(made.passes);
             values.push(made.values);

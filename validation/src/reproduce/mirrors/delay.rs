@@ -23,6 +23,7 @@ use crate::error::{Result, ValidationError};
 use crate::measure::{BatchPlan, Estimator, batches, layout};
 use crate::statistics::batches::summarise;
 use crate::statistics::student;
+use crate::watch::Watch;
 
 /// Radius of the laser \[m\].
 const LASER: f64 = 0.001;
@@ -71,7 +72,7 @@ impl Delay {
 ///
 /// # Errors
 /// If the scene cannot be changed so, or no light arrives where it should.
-pub fn measure(options: &Options, room: &Room, say: &mut dyn FnMut(&str)) -> Result<Vec<Delay>> {
+pub fn measure(options: &Options, room: &Room, watch: &mut Watch<'_>) -> Result<Vec<Delay>> {
     let light = LightOptions { photons_per_pass: Some(PHOTONS) };
     let beams = BeamOptions {
         photons_per_pass: Some(PHOTONS),
@@ -82,7 +83,7 @@ pub fn measure(options: &Options, room: &Room, say: &mut dyn FnMut(&str)) -> Res
     let mut delays = Vec::new();
     for estimator in [Estimator::Light(light), Estimator::Beams(beams)] {
         let delay = one(options, room, &estimator)?;
-        say(&format!(
+        watch.tell(&format!(
             "  {}: {:.5} ± {:.5} m, exact {:.5} m; {}",
             delay.method,
             delay.measured,

@@ -26,7 +26,7 @@ fn the_room_is_as_the_scene_says_and_the_exact_delay_is_that_of_the_glass() {
 fn the_delay_behind_the_ball_is_that_of_the_glass() {
     let options = trial("delay");
     let room = Room::of(&options.load(NAME, &[]).unwrap()).unwrap();
-    for delay in delay::measure(&options, &room, &mut |_| ()).unwrap() {
+    for delay in delay::measure(&options, &room, &mut Watch::default()).unwrap() {
         // 99 % intervals around what bins resolve; the seed is fixed.
         assert!(delay.agrees() && delay.half < 1e-3, "{delay:?}");
     }
@@ -36,7 +36,7 @@ fn the_delay_behind_the_ball_is_that_of_the_glass() {
 fn all_files_are_made() {
     let options = trial("mirrors");
     let _ = fs::remove_dir_all(&options.out);
-    let result = run(&options, &mut |_| ()).unwrap();
+    let result = run(&options, &mut Watch::default()).unwrap();
     let out = options.out.join(NAME);
     for file in ["sequence.png", "viewer.html", "caustics.html", "delay.json", "caustics-area.json"]
     {

@@ -1,47 +1,38 @@
-//! The long render that a comparison at picture quality is judged by, made in batches.
+//! The mean of batches with its measured noise, and its file.
 //!
-//! A reference is the mean of K batches of the unbiased path tracer, with as many passes each, one
-//! after the other with one seed: it is what a single render of all passes would be. Its own noise is
-//! measured, not modelled: the variance of the mean of K batches is Σ(x − x̄)²/(K(K − 1)), without bias
-//! for every cell, and precise once summed over many. For errors, which are of the mean over
-//! channels, that is done for the mean over channels, so that nothing need be known of how channels
-//! go together; and for the energy of a pixel within the window, whose bins go together.
+//! For errors, which are of the mean over channels, variance is also measured for the mean over
+//! channels, so that nothing need be known of how channels go together; and for the energy of a
+//! pixel within the window, whose bins go together.
 //!
-//! The file is written after each batch: nothing is lost by an interruption, and a later run adds
-//! batches until it has been rendered for as long as asked. It is a result like any other
-//! (`transient`, `variance`, `opl_edges`, … as in `transient.npz`) with further keys:
+//! The file is a result like any other (`transient`, `variance`, `opl_edges`, … as in
+//! `transient.npz`) with further keys:
 //!
 //! | key | type, shape | |
 //! | --- | --- | --- |
 //! | `mean_variance` | f4 (H, W, T) | variance of the mean over channels |
 //! | `window_variance` | f8 (H, W) | variance of the sum over bins of the mean over channels |
 //! | `judged` | u1 (H, W) | 1: judged ([`crate::judged`]) |
-//! | `provenance` | u1 (N) | JSON: scene, seed, batches, passes, seconds, commit |
+//! | `provenance` | u1 (N) | JSON: scene, method, seed, batches, passes, seconds, commits, values |
 
 use std::path::Path;
-use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tpb_film::archive::{ArchiveReader, ArchiveWriter, Compression};
 use tpb_film::{Arrays, atomic_write};
-use tpb_path::PathOptions;
-use tpb_render::{Budget, RunSettings};
-use tpb_scene::load::LoadedScene;
-use tpb_scene::{Plan, Transport};
+use tpb_render::RunSummary;
 
 use crate::error::{Result, ValidationError};
-use crate::judged::Referee;
-use crate::measure::{Estimator, layout, render};
 
-/// Batches that a new reference is made in.
-const BATCHES: u32 = 8;
-/// Fewer do not tell their variance.
-const FEWEST: u64 = 4;
-
-/// Where a reference comes from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// Where a long render comes from.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Made {
+    /// Method; older files do not say.
+    #[serde(default = "path")]
+    pub method: String,
+    /// The method with its options, as text; older files do not say, and were made with defaults.
+    #[serde(default)]
+    pub estimator: Option<String>,
     /// The scene with all defaults.
     pub scene: Value,
     /// Seed.
@@ -58,18 +49,30 @@ pub struct Made {
     pub cpu_seconds: f64,
     /// Commits of the sources that made it.
     pub commits: Vec<String>,
+    /// What was asked of each batch.
+    #[serde(default)]
+    pub values: Vec<Vec<f64>>,
+}
+
+fn path() -> String {
+    "path".into()
 }
 
 impl Made {
-    /// Whether another batch brings the wall time closer to what is wanted \[s\].
-    fn wants_more(&self, wanted: f64) -> bool {
-        let batch = self.wall_seconds / self.batches as f64;
-        self.batches < FEWEST || self.wall_seconds + 0.5 * batch < wanted
+    /// Counts what a batch took.
+    pub(super) fn count(&mut self, summary: &RunSummary, commit: &str) {
+        self.camera_paths += summary.counts.camera_paths;
+        self.wall_seconds += summary.wall_seconds;
+        self.cpu_seconds += summary.cpu_seconds.unwrap_or(summary.wall_seconds);
+        if self.commits.last().is_none_or(|last| last != commit) {
+            self.commits.push(commit.to_owned());
+        }
     }
 }
 
-/// A reference and what is known of its error.
-pub struct LongReference {
+/// A mean of batches and what is known of its error.
+#[derive(Clone)]
+pub struct LongMean {
     /// The mean, with the variance of the mean.
     pub arrays: Arrays,
     /// Variance of the mean over channels, (pixel, bin).
@@ -82,24 +85,21 @@ pub struct LongReference {
     pub made: Made,
 }
 
-impl LongReference {
-    /// The reference of a scene, rendered for `time` at least: what the file has, and as many
-    /// batches more as are missing. `say` is told of each.
-    pub fn obtain(
-        loaded: &LoadedScene,
-        path: &Path,
-        time: Duration,
-        seed: u64,
-        commit: &str,
-        say: &mut dyn FnMut(&str),
-    ) -> Result<Self> {
-        match Plan::new(&loaded.scene, &loaded.scene.integrator).transport {
-            Transport::Mono => obtain::<1>(loaded, path, time, seed, commit, say),
-            Transport::Rgb => obtain::<3>(loaded, path, time, seed, commit, say),
+impl LongMean {
+    /// Of no batches yet, with the shape and the edges of one.
+    pub(super) fn empty(batch: &Arrays, judged: Vec<bool>, made: Made) -> Self {
+        let mut arrays = batch.clone();
+        arrays.variance = Some(vec![0.0; arrays.transient.len()]);
+        Self {
+            mean_variance: vec![0.0; batch.pixels() * batch.bins],
+            window_variance: vec![0.0; batch.pixels()],
+            judged,
+            made,
+            arrays,
         }
     }
 
-    /// Reads a file that [`LongReference::obtain`] wrote.
+    /// Reads a file that [`super::LongRender::obtain`] wrote.
     pub fn read(path: &Path) -> Result<Self> {
         let arrays = Arrays::read_npz(path)?;
         let mut npz = ArchiveReader::open(path)?;
@@ -117,7 +117,7 @@ impl LongReference {
         })
     }
 
-    fn write(&self, path: &Path) -> Result<()> {
+    pub(super) fn write(&self, path: &Path) -> Result<()> {
         let a = &self.arrays;
         let made = serde_json::to_vec(&self.made)
             .map_err(|e| ValidationError::unusable("provenance", e))?;
@@ -148,7 +148,7 @@ impl LongReference {
     }
 
     /// Adds a batch to means and variances.
-    fn add(&mut self, batch: &Arrays) {
+    pub(super) fn add(&mut self, batch: &Arrays) {
         let n = self.made.batches as f64 + 1.0;
         let channels = self.arrays.channels;
         let mean = |cell: &[f32]| cell.iter().map(|&v| f64::from(v)).sum::<f64>() / channels as f64;
@@ -198,85 +198,6 @@ fn next_variance(variance: f64, mean: f64, value: f64, n: f64) -> f64 {
     let before = variance * (n - 1.0) * (n - 2.0);
     let more = (value - mean) * (value - mean) * (n - 1.0) / n;
     (before + more) / (n * (n - 1.0))
-}
-
-fn obtain<const C: usize>(
-    loaded: &LoadedScene,
-    path: &Path,
-    time: Duration,
-    seed: u64,
-    commit: &str,
-    say: &mut dyn FnMut(&str),
-) -> Result<LongReference> {
-    let scene = &loaded.scene;
-    let kept = if path.exists() { LongReference::read(path).ok() } else { None };
-    let mut reference = kept.filter(|kept| kept.made.scene == loaded.canonical);
-    if let Some(LongReference { made: Made { batches, wall_seconds, .. }, .. }) = &reference {
-        say(&format!("  reference: {batches} batches, {wall_seconds:.0} s, are there already"));
-    }
-    let plan = Plan::new(scene, &scene.integrator);
-    let method =
-        Estimator::Path(PathOptions::default()).prepare::<C>(scene, &plan, scene.integrator)?;
-    let wanted = time.as_secs_f64();
-    while reference.as_ref().is_none_or(|reference| reference.made.wants_more(wanted)) {
-        let settings = match &reference {
-            None => RunSettings { seed, budget: Budget::Time(time / BATCHES), first_pass: 0 },
-            Some(LongReference { made, .. }) => RunSettings {
-                seed: made.seed,
-                budget: Budget::Passes(made.passes),
-                first_pass: made.batches * made.passes,
-            },
-        };
-        let (arrays, summary) = render(&*method, layout(&scene.film, 0.0)?, &settings)?;
-        let whole = match &mut reference {
-            Some(whole) => whole,
-            none => none.insert(begin::<C>(loaded, &arrays, seed, summary.passes)?),
-        };
-        whole.add(&arrays);
-        drop(arrays);
-        whole.made.camera_paths += summary.counts.camera_paths;
-        whole.made.wall_seconds += summary.wall_seconds;
-        whole.made.cpu_seconds += summary.cpu_seconds.unwrap_or(summary.wall_seconds);
-        if whole.made.commits.last().is_none_or(|last| last != commit) {
-            whole.made.commits.push(commit.to_owned());
-        }
-        whole.write(path)?;
-        let Made { batches, passes, wall_seconds, .. } = whole.made;
-        say(&format!(
-            "  reference: batch {batches} of {passes} passes; {wall_seconds:.0} s of {wanted:.0} s"
-        ));
-    }
-    reference.ok_or_else(|| ValidationError::unusable("reference", "no batch was made"))
-}
-
-/// An empty reference with the shape of a batch.
-fn begin<const C: usize>(
-    loaded: &LoadedScene,
-    batch: &Arrays,
-    seed: u64,
-    passes: u64,
-) -> Result<LongReference> {
-    if batch.bins == 0 {
-        return Err(ValidationError::unusable("reference", "the scene's film has no time bins"));
-    }
-    let mut arrays = batch.clone();
-    arrays.variance = Some(vec![0.0; arrays.transient.len()]);
-    Ok(LongReference {
-        mean_variance: vec![0.0; batch.pixels() * batch.bins],
-        window_variance: vec![0.0; batch.pixels()],
-        judged: Referee::Path.judged::<C>(&loaded.scene)?,
-        made: Made {
-            scene: loaded.canonical.clone(),
-            seed,
-            batches: 0,
-            passes,
-            camera_paths: 0,
-            wall_seconds: 0.0,
-            cpu_seconds: 0.0,
-            commits: Vec::new(),
-        },
-        arrays,
-    })
 }
 
 #[cfg(test)]
