@@ -121,6 +121,11 @@ impl Context {
     pub fn reference_path(&self, name: &str) -> PathBuf {
         self.data.join("references").join(format!("{name}.npz"))
     }
+
+    /// The one that an earlier run made of a scene that ships without.
+    pub fn made_reference_path(&self, name: &str) -> PathBuf {
+        self.out.join("references").join(format!("{name}.npz"))
+    }
 }
 
 /// How an experiment ended.

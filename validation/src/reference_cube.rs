@@ -145,7 +145,7 @@ impl ReferenceCube {
         context: &Context,
         time: Duration,
     ) -> Result<(Self, Option<String>)> {
-        let made = context.out.join("references").join(format!("{name}.npz"));
+        let made = context.made_reference_path(name);
         for path in [&context.reference_path(name), &made] {
             if path.exists() {
                 let reference = Self::read(path)?;

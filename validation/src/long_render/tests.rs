@@ -11,7 +11,7 @@ use crate::reproduce::load;
 
 /// *Cornell blocks* on 8x8 pixels and 20 bins.
 fn scene() -> LoadedScene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-blocks.json");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/cornell-blocks.json");
     let changes = ["width=8", "height=8", "temporal_bins=20", "bin_width_opl=0.7"]
         .map(|change| format!("sensor.film.{change}"));
     load(&path, &changes).unwrap()
@@ -104,9 +104,7 @@ fn an_interrupted_render_goes_on_to_the_same_bits() {
     let mut told = String::new();
     let mut tell = |line: &str| told.push_str(line);
     let mut watch = Watch::new(&mut tell);
-    LongRender { commit: "other", own: true, ..order }
-        .obtain(&path, &mut watch)
-        .unwrap();
+    LongRender { commit: "other", own: true, ..order }.obtain(&path, &mut watch).unwrap();
     std::fs::remove_dir_all(&folder).unwrap();
     assert!(!told.contains("are there already") && told.contains("1 batches"), "{told}");
 }
