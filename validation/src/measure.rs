@@ -3,7 +3,7 @@
 //! A batch is a film of its own with a fixed number of passes; consecutive batches use consecutive
 //! passes of one seed, so that they are independent and repeat to the bit.
 
-use tpb_beams::{BeamOptions, PhotonBeams};
+use tpb_beams::{BeamOptions, KernelChoice, PhotonBeams};
 use tpb_film::{Arrays, FilmOptions, Layout, TimeAxis, TransientFilm};
 use tpb_light::{LightOptions, LightTracer};
 use tpb_path::{PathOptions, PathTracer};
@@ -44,6 +44,33 @@ impl Estimator {
             Self::Path(_) => "path",
             Self::Beams(_) => "beams",
             Self::Light(_) => "light",
+        }
+    }
+
+    /// Labels of all methods and of the kernels that beams may have beside their default.
+    pub const LABELS: [&'static str; 6] =
+        ["path", "light", "beams", "beams-1d", "beams-2d", "beams-3d"];
+
+    /// The method of a label, else with its default options.
+    pub fn of_label(label: &str) -> Option<Self> {
+        let kernel = match label {
+            "beams-1d" => KernelChoice::OneD,
+            "beams-2d" => KernelChoice::TwoD,
+            "beams-3d" => KernelChoice::ThreeD,
+            name => return Self::of_name(name),
+        };
+        Some(Self::Beams(BeamOptions { kernel: Some(kernel), ..BeamOptions::default() }))
+    }
+
+    /// Its name, and the kernel if one is chosen.
+    pub fn label(&self) -> &'static str {
+        let Self::Beams(BeamOptions { kernel: Some(kernel), .. }) = self else {
+            return self.name();
+        };
+        match kernel {
+            KernelChoice::OneD => "beams-1d",
+            KernelChoice::TwoD => "beams-2d",
+            KernelChoice::ThreeD => "beams-3d",
         }
     }
 
@@ -149,4 +176,19 @@ fn batches_with<const C: usize>(
         each(&Cube::stacked(&arrays));
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_name_methods_and_kernels() {
+        for label in Estimator::LABELS {
+            let estimator = Estimator::of_label(label).unwrap();
+            assert_eq!(estimator.label(), label);
+            assert!(label.starts_with(estimator.name()));
+        }
+        assert_eq!(Estimator::of_label("beams-4d"), None);
+    }
 }

@@ -6,11 +6,14 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
+use tpb_scene::Scene;
 use tpb_validation::experiment::{Context, Effort};
-use tpb_validation::judged::Referee;
+use tpb_validation::experiments::equal_time::RUNS;
+use tpb_validation::judged::{Referee, sees_no_mirror};
 use tpb_validation::measure::Estimator;
 use tpb_validation::reference_cube::ReferenceCube;
 use tpb_validation::run_time::{Clock, ErrorAgainstTime, RunTimePlan};
+use tpb_validation::watch::duration;
 use tpb_validation::{ValidationError, scenes, with_threads};
 
 use crate::circumstances;
@@ -19,15 +22,22 @@ use crate::workspace::{Outcome, root, say};
 /// Options of `cargo xtask error-time`.
 #[derive(Args)]
 #[command(after_help = "\
-Writes SCENE.json, SCENE-cpu.svg, SCENE-wall.svg and SCENE-efficiency.svg for each scene.
-A scene that ships without a reference gets one first, rendered by the path tracer for
---reference-time; it is kept under target/validation/references.")]
+Examples:
+  cargo xtask error-time                           all scenes and methods, about 20 minutes
+  cargo xtask error-time --time 2 --replicates 4   the same, noisier, in 3 minutes, references apart
+  cargo xtask error-time --scene cornell-blocks --method path --method beams
+
+Writes SCENE.json, SCENE-cpu.svg, SCENE-wall.svg and SCENE-efficiency.svg for each scene;
+`cargo xtask dashboard` draws from them. A scene that ships without a reference gets one first,
+rendered by the method that finds all its light for --reference-time; it is kept under
+target/validation/references. The light tracer is left out where mirrors or glass are judged, in which
+it sees nothing.")]
 pub(crate) struct ErrorTimeArgs {
-    /// Names of shipped scenes
-    #[arg(long = "scene", value_name = "NAME", default_value = "cornell-blocks")]
+    /// Names of shipped scenes [default: those that have an equal-time experiment]
+    #[arg(long = "scene", value_name = "NAME")]
     scenes: Vec<String>,
-    /// Methods [default: all]
-    #[arg(long = "method", value_parser = Estimator::NAMES)]
+    /// Methods [default: all, beams with their default kernel and with those of 2D and 3D]
+    #[arg(long = "method", value_parser = Estimator::LABELS)]
     methods: Vec<String>,
     /// Wall time of a run in seconds
     #[arg(long, value_name = "SECONDS", default_value = "8", value_parser = seconds)]
@@ -53,7 +63,12 @@ pub(crate) struct ErrorTimeArgs {
 pub(crate) fn run(args: &ErrorTimeArgs) -> Outcome {
     let out = args.out.clone().unwrap_or_else(|| root().join("target/error-time"));
     fs::create_dir_all(&out)?;
-    for scene in &args.scenes {
+    let all = || RUNS.iter().map(|run| run.scene.to_owned()).collect();
+    let scenes: Vec<String> = if args.scenes.is_empty() { all() } else { args.scenes.clone() };
+    let methods = methods(&args.methods).len() as f64;
+    let seconds = args.time.as_secs_f64() * args.replicates as f64 * methods * scenes.len() as f64;
+    say(&format!("plan: {} scenes, about {}", scenes.len(), duration(seconds)));
+    for scene in &scenes {
         let found = with_threads(args.threads, || measure(args, scene))??;
         for line in found.table() {
             say(&line);
@@ -68,20 +83,35 @@ fn measure(args: &ErrorTimeArgs, scene: &str) -> Result<ErrorAgainstTime, Valida
     let kept = root().join("target/validation");
     let context = Context::new(Effort::Full, args.seed, kept);
     let loaded = scenes::shipped(&context.scene_path(scene))?;
+    let known = RUNS.iter().find(|run| run.scene == scene);
+    let referee = known.map_or(Referee::Path, |run| run.referee);
+    let there = [context.reference_path(scene), context.made_reference_path(scene)];
+    if !there.iter().any(|path| path.exists()) {
+        say(&format!(
+            "{scene}: a reference first, {}",
+            duration(args.reference_time.as_secs_f64())
+        ));
+    }
     let (reference, note) =
-        ReferenceCube::of_shipped(&loaded, scene, Referee::Path, &context, args.reference_time)?;
-    if let Some(note) = note {
+        ReferenceCube::of_shipped(&loaded, scene, referee, &context, args.reference_time)?;
+    let (mut methods, mut left_out) = (methods(&args.methods), Vec::new());
+    if let Some(reason) = unseen_by_light(&loaded.scene, &reference) {
+        methods.retain(|method| !matches!(method, Estimator::Light(_)));
+        left_out.push(reason);
+    }
+    for note in note.iter().chain(&left_out) {
         say(&format!("{scene}: {note}"));
     }
     let plan = RunTimePlan {
         name: scene.to_owned(),
         scene: &loaded.scene,
         reference: &reference,
-        methods: methods(&args.methods),
+        methods,
         time: args.time,
         replicates: args.replicates,
         seed: args.seed,
         circumstances: circumstances::of(args.threads, args.seed),
+        left_out,
     };
     plan.run(|method, replicate| say(&format!("{scene}: {method}, run {}", replicate + 1)))
 }
@@ -91,11 +121,24 @@ fn seconds(text: &str) -> Result<Duration, Box<dyn Error + Send + Sync>> {
     Ok(Duration::try_from_secs_f64(text.parse()?)?)
 }
 
-/// The methods of these names, or all.
-fn methods(names: &[String]) -> Vec<Estimator> {
-    let all = Estimator::NAMES.into_iter();
-    let chosen = all.filter(|name| names.is_empty() || names.iter().any(|asked| asked == name));
-    chosen.filter_map(Estimator::of_name).collect()
+/// Why the light tracer is left out, if pixels are judged that it does not see.
+fn unseen_by_light(scene: &Scene, reference: &ReferenceCube) -> Option<String> {
+    let judged = reference.mask.iter().zip(sees_no_mirror(scene));
+    let unseen = judged.filter(|&(&judged, plain)| judged && !plain).count();
+    (unseen > 0).then(|| {
+        format!("light: {unseen} judged pixels look at mirrors or glass, in which it sees nothing")
+    })
+}
+
+/// The methods of these labels, or all: beams with their default kernel once.
+fn methods(labels: &[String]) -> Vec<Estimator> {
+    let default = |label: &&str| *label != "beams-1d";
+    let all = Estimator::LABELS.into_iter();
+    let chosen: Vec<&str> = match labels {
+        [] => all.filter(default).collect(),
+        _ => all.filter(|label| labels.iter().any(|asked| asked == label)).collect(),
+    };
+    chosen.into_iter().filter_map(Estimator::of_label).collect()
 }
 
 fn write(found: &ErrorAgainstTime, out: &Path) -> Result<(), Box<dyn Error>> {

@@ -32,6 +32,9 @@ pub struct Scene {
     /// Where and how it was measured, if that is told: `commit`, `machine`, `flags`.
     #[serde(default)]
     pub circumstances: Option<Value>,
+    /// Methods that were left out, each with the reason.
+    #[serde(default)]
+    pub left_out: Vec<String>,
     /// One for each method.
     pub curves: Vec<Curve>,
 }

@@ -42,33 +42,36 @@ pub struct EqualTimeRun {
     pub control: f64,
 }
 
-/// Each scene; caustics take long.
-pub fn all(effort: Effort) -> Experiments {
-    let cornell_blocks = EqualTimeRun {
+/// All of them; the first is part of the quick suite.
+pub const RUNS: [EqualTimeRun; 3] = [
+    EqualTimeRun {
         scene: "cornell-blocks",
         full_seconds: 8,
         beams_win: true,
         referee: Referee::Path,
         control: 1.1,
-    };
-    let mut list: Experiments = vec![Arc::new(cornell_blocks)];
-    if effort == Effort::Full {
-        list.push(Arc::new(EqualTimeRun {
-            scene: "mirror-caustic",
-            full_seconds: 4,
-            control: 1.2,
-            ..cornell_blocks
-        }));
-        // No path finds the caustics of its point lamp. They are sharper than any blur.
-        list.push(Arc::new(EqualTimeRun {
-            scene: "mirror-caustic-point",
-            full_seconds: 4,
-            beams_win: false,
-            referee: Referee::Light,
-            ..cornell_blocks
-        }));
-    }
-    list
+    },
+    EqualTimeRun {
+        scene: "mirror-caustic",
+        full_seconds: 4,
+        beams_win: true,
+        referee: Referee::Path,
+        control: 1.2,
+    },
+    // No path finds the caustics of its point lamp. They are sharper than any blur.
+    EqualTimeRun {
+        scene: "mirror-caustic-point",
+        full_seconds: 4,
+        beams_win: false,
+        referee: Referee::Light,
+        control: 1.1,
+    },
+];
+
+/// Each scene; caustics take long.
+pub fn all(effort: Effort) -> Experiments {
+    let runs = if effort == Effort::Full { &RUNS[..] } else { &RUNS[..1] };
+    runs.iter().map(|&run| Arc::new(run) as Arc<dyn Experiment>).collect()
 }
 
 impl EqualTimeRun {

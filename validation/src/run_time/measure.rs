@@ -72,7 +72,7 @@ impl RunTimePlan<'_> {
                 let checkpoints = runs[index].first().map(|first| first.snapshots.len());
                 let run = self.replicate::<C>(estimator, seed, checkpoints)?;
                 runs[index].push(run);
-                each(estimator.name(), replicate);
+                each(estimator.label(), replicate);
             }
         }
         let judged = self.reference.mask.iter().filter(|&&judged| judged).count();
@@ -88,6 +88,7 @@ impl RunTimePlan<'_> {
             seed: self.seed,
             threads: rayon::current_num_threads(),
             circumstances: self.circumstances.clone(),
+            left_out: self.left_out.clone(),
             curves: curves.collect(),
         })
     }
@@ -185,7 +186,7 @@ fn curve(estimator: &Estimator, mut runs: Vec<Run>, noise: &ReferenceNoise, cell
         variances.extend(resolved(split.variance, 1));
     }
     Curve {
-        method: estimator.name().into(),
+        method: estimator.label().into(),
         options: runs[0].options.take(),
         setup_seconds: runs.iter().map(|run| run.setup_seconds).sum::<f64>() / n,
         checkpoints,

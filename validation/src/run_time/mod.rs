@@ -53,6 +53,8 @@ pub struct RunTimePlan<'a> {
     pub seed: u64,
     /// Where and how it is measured; noted, not used.
     pub circumstances: Circumstances,
+    /// Methods that are not among them, each with the reason; noted, not used.
+    pub left_out: Vec<String>,
 }
 
 /// Errors of all methods on one scene against run time.
@@ -75,6 +77,9 @@ pub struct ErrorAgainstTime {
     /// Where and how it was measured, for readers.
     #[serde(default)]
     pub circumstances: Circumstances,
+    /// Methods that were left out, each with the reason.
+    #[serde(default)]
+    pub left_out: Vec<String>,
     /// One for each method.
     pub curves: Vec<Curve>,
 }

@@ -17,7 +17,7 @@ impl ErrorAgainstTime {
             self.pixels[1],
         )];
         lines.push(format!(
-            "  {:<6} {:>6} {:>8} {:>8} {:>9} {:>29} {:>29} {:>31} {:>12}",
+            "  {:<8} {:>6} {:>8} {:>8} {:>9} {:>29} {:>29} {:>31} {:>12}",
             "method",
             "passes",
             "wall s",
@@ -30,7 +30,7 @@ impl ErrorAgainstTime {
         ));
         for curve in &self.curves {
             lines.extend(curve.checkpoints.iter().map(|checkpoint| row(&curve.method, checkpoint)));
-            lines.push(format!("  {:<6} {}", curve.method, slopes(curve)));
+            lines.push(format!("  {:<8} {}", curve.method, slopes(curve)));
         }
         lines
     }
@@ -38,7 +38,7 @@ impl ErrorAgainstTime {
 
 fn row(method: &str, point: &Checkpoint) -> String {
     format!(
-        "  {method:<6} {:>6} {:>8.3} {:>8.3} {:>9.2e} {:>29} {:>29} {:>31} {:>12.3e}",
+        "  {method:<8} {:>6} {:>8.3} {:>8.3} {:>9.2e} {:>29} {:>29} {:>31} {:>12.3e}",
         point.passes,
         point.wall_seconds,
         point.cpu_seconds,

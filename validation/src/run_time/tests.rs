@@ -63,6 +63,7 @@ fn the_dashboard_reads_what_is_written() {
         seed: 2,
         threads: 2,
         circumstances: Circumstances { machine: "m".into(), ..Circumstances::default() },
+        left_out: vec!["light: a reason".into()],
         curves: vec![Curve {
             method: "path".into(),
             options: serde_json::json!({ "samples": 9 }),

@@ -290,6 +290,7 @@ function drawPoints(data) {
     ["runs", `${scene.replicates} of each method, seeds from ${scene.seed}, ${scene.threads} threads`],
     ["commit", about.commit], ["machine", about.machine], ["flags", about.flags],
     ["reference", `commit ${scene.reference.commit || "unknown"}, ${digits(scene.reference.cpu_seconds)} CPU s, own NMSE ${digits(scene.reference_nmse)}`],
+    ...(scene.left_out ?? []).map((reason) => ["left out", reason]),
     ["pixels judged", `${scene.pixels[0]} of ${scene.pixels[1]}`],
     ...curves.map(({ curve }) => [curve.method, `preparation ${digits(curve.setup_seconds)} s, slope of its variance ${slopeText(curve.variance_slope)}, options ${JSON.stringify(curve.options)}`]),
   ]));
