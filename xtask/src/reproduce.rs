@@ -2,31 +2,35 @@
 
 use std::error::Error;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
-use tpb_validation::reproduce::summary::Summary;
-use tpb_validation::reproduce::{Options, cornell, mirrors};
-use tpb_validation::suite;
-use tpb_validation::watch::Watch;
-use tpb_validation::{ValidationError, with_threads};
+use tpb_validation::reproduce::Options;
+use tpb_validation::reproduce::session::{self, Figure};
+use tpb_validation::with_threads;
 
 use crate::circumstances;
 use crate::workspace::{Outcome, root, say};
 
 /// Examples below the options.
 const EXAMPLES: &str = "Examples:
-  cargo xtask reproduce all                     everything, about 23 minutes on 2 cores
+  cargo xtask reproduce all                     everything, about half an hour on 2 cores
   cargo xtask reproduce all --time 160          four times as long, half the noise
   cargo xtask reproduce mirrors --pixels 64 --bins 80 --time 2    a trial
 
 Time of a run is that of one render at picture quality; all other renders take a fixed part or
-multiple of it, so that the whole takes about 35 times as long. References are kept in the output
-folder and used again; a larger --reference-time adds to them. What was rendered when a run was
-interrupted is used by the next one of the same flags and commit.
+multiple of it: the plan is printed first. References are kept in the output folder and used again; a
+larger --reference-time adds to them. Ctrl-c ends the run after the render under way, a second one at
+once; whatever was finished is kept, and the same command goes on there (same commit, sources as
+committed).
 
 Writes index.html, table.md, and for each scene a folder with index.html, viewer.html, result.json,
-pictures and charts.";
+pictures and charts. No page takes more than 20 MB; what had to be reduced for that is said on it.";
+
+/// The exit code of a program that SIGINT ended.
+const INTERRUPTED: i32 = 130;
 
 /// Which scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -37,6 +41,16 @@ enum Which {
     Mirrors,
     /// Both
     All,
+}
+
+impl Which {
+    fn figures(self) -> &'static [Figure] {
+        match self {
+            Self::CornellBlocks => &[Figure::CornellBlocks],
+            Self::Mirrors => &[Figure::Mirrors],
+            Self::All => &Figure::ALL,
+        }
+    }
 }
 
 /// Options of `cargo xtask reproduce`.
@@ -76,26 +90,13 @@ pub(crate) struct ReproduceArgs {
 pub(crate) fn run(args: &ReproduceArgs) -> Outcome {
     let started = Instant::now();
     let options = options(args);
-    // Better now than after the renders.
-    suite::probe(&options.out)?;
     let circumstances = &options.circumstances;
     say(&format!("{}; commit {}", circumstances.machine, circumstances.commit));
-    let finish = |options: &Options| -> Result<Summary, ValidationError> {
-        let summary = Summary::read(&options.out);
-        summary.write(&options.out, &options.circumstances, &options.command)?;
-        Ok(summary)
-    };
-    let scenes = |options: &Options| -> Result<Summary, ValidationError> {
-        if args.which != Which::Mirrors {
-            cornell::run(options, &mut Watch::new(&mut |line: &str| say(line)))?;
-            finish(options)?;
-        }
-        if args.which != Which::CornellBlocks {
-            mirrors::run(options, &mut Watch::new(&mut |line: &str| say(line)))?;
-        }
-        finish(options)
-    };
-    let summary = with_threads(args.threads, || scenes(&options))??;
+    let stop = stop();
+    let figures = args.which.figures();
+    let summary = with_threads(args.threads, || {
+        session::run(figures, &options, &mut |line| say(line), &stop)
+    })??;
     say("");
     for line in summary.markdown().lines() {
         say(line);
@@ -104,6 +105,23 @@ pub(crate) fn run(args: &ReproduceArgs) -> Outcome {
     let seconds = started.elapsed().as_secs_f64();
     say(&format!("{}: {seconds:.0} s", options.out.join("index.html").display()));
     Ok(true)
+}
+
+/// True once ctrl-c was pressed; a second time ends the program.
+fn stop() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&stop);
+    // Where the system refuses a handler, ctrl-c ends the program, and what was finished is kept, too.
+    let _ = ctrlc::set_handler(move || on_interrupt(&asked));
+    stop
+}
+
+#[expect(clippy::exit, reason = "the second ctrl-c ends the program, wherever it is")]
+fn on_interrupt(stop: &AtomicBool) {
+    if stop.swap(true, Ordering::Relaxed) {
+        std::process::exit(INTERRUPTED);
+    }
+    say("ending after this render; ctrl-c again ends at once");
 }
 
 fn options(args: &ReproduceArgs) -> Options {

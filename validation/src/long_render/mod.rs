@@ -183,8 +183,7 @@ impl<'a> LongRender<'a> {
     fn wants_more(&self, made: &Made) -> bool {
         let batch = made.wall_seconds / made.batches as f64;
         made.batches < self.fewest
-            || (self.passes.is_none()
-                && made.wall_seconds + 0.5 * batch < self.time.as_secs_f64())
+            || (self.passes.is_none() && made.wall_seconds + 0.5 * batch < self.time.as_secs_f64())
     }
 
     fn tell(&self, made: &Made, watch: &mut Watch<'_>) {
@@ -193,7 +192,9 @@ impl<'a> LongRender<'a> {
             Some(_) => format!("; {} batches are wanted", self.fewest),
             None => format!(" of {:.0} s", self.time.as_secs_f64()),
         };
-        watch.tell(&format!("  {method}: {batches} batches of {passes} passes, {wall_seconds:.0} s{of}"));
+        watch.tell(&format!(
+            "  {method}: {batches} batches of {passes} passes, {wall_seconds:.0} s{of}"
+        ));
     }
 
     /// An empty mean with the shape of a batch.

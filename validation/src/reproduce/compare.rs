@@ -1,5 +1,5 @@
 //! An equal-time comparison with all its parts: render times, windows of time, single bins, kinds of
-//! cells.
+//! cells, kinds within windows, and the pixels that see a lamp.
 
 use std::ops::Range;
 
@@ -39,16 +39,19 @@ pub struct AtTime {
     pub factor: Option<Factor>,
     /// The same over all pixels.
     pub factor_whole: Option<Factor>,
+    /// NMSE · wall seconds likewise, judged pixels: what a method gains that keeps all processors busy.
+    #[serde(default)]
+    pub factor_wall: Option<Factor>,
 }
 
-/// A part of the cells of judged pixels, at the last render time.
+/// A part of the cells, at the last render time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     /// What it holds.
     pub label: String,
     /// OPL from and to \[m\].
     pub opl: [f64; 2],
-    /// Share of the signal Σr².
+    /// Share of the signal Σr² of judged pixels; of all pixels for those that see a lamp.
     pub share: f64,
     /// Error of each method, as a part of this part's signal; `None` where there is none.
     pub splits: Vec<Option<Split>>,
@@ -86,6 +89,12 @@ pub struct Comparison {
     pub windows: Vec<Part>,
     /// Kinds of cells; empty if they were not sorted.
     pub kinds: Vec<Part>,
+    /// Kinds of cells within windows, kind by kind.
+    #[serde(default)]
+    pub kinds_in_windows: Vec<Part>,
+    /// Pixels that see a lamp, which are not judged; `None` if there are none.
+    #[serde(default)]
+    pub lamps: Option<Part>,
     /// Single bins.
     pub frames: Vec<Part>,
 }
@@ -125,8 +134,7 @@ impl Comparison {
                 let products = Products::of(&cubes, truth)?;
                 drop(cubes);
                 let judged = split(&Products::over(&products.frames, bins.clone()), &noise)?;
-                let whole =
-                    split(&Products::over(&products.frames_whole, bins.clone()), &noise_whole)?;
+                let whole = split(&products.whole(), &noise_whole)?;
                 let (spent, passes) = mean_spent(runs, reading);
                 methods.push(Standing { spent, passes, judged, whole });
                 last.push(products);
@@ -147,6 +155,8 @@ impl Comparison {
             reference_nmse: noise.variance / noise.signal(),
             windows: parts.windows(windows),
             kinds: parts.kinds(),
+            kinds_in_windows: parts.kinds_in_windows(windows),
+            lamps: parts.lamps(noise_whole.signal()),
             frames: parts.frames(),
             times,
         };
@@ -204,14 +214,17 @@ fn mean_spent(runs: &[Replicate], reading: usize) -> (Spent, f64) {
 }
 
 fn at_time(seconds: f64, methods: Vec<Standing>) -> AtTime {
-    let factor = |of: fn(&Standing) -> &Split| match methods.as_slice() {
-        [a, b, ..] => {
-            of_splits(of(a), of(b)).map(|f| f.scaled(a.spent.cpu_seconds / b.spent.cpu_seconds))
-        }
+    let factor = |of: fn(&Standing) -> &Split, clock: fn(&Spent) -> f64| match methods.as_slice() {
+        [a, b, ..] => of_splits(of(a), of(b)).map(|f| f.scaled(clock(&a.spent) / clock(&b.spent))),
         _ => None,
     };
-    let (factor, factor_whole) = (factor(|s| &s.judged), factor(|s| &s.whole));
-    AtTime { seconds, methods, factor, factor_whole }
+    let factors = (
+        factor(|standing| &standing.judged, |spent| spent.cpu_seconds),
+        factor(|standing| &standing.whole, |spent| spent.cpu_seconds),
+        factor(|standing| &standing.judged, |spent| spent.wall_seconds),
+    );
+    let (factor, factor_whole, factor_wall) = factors;
+    AtTime { seconds, methods, factor, factor_whole, factor_wall }
 }
 
 fn of_splits(a: &Split, b: &Split) -> Option<Factor> {
@@ -248,30 +261,66 @@ impl Parts<'_> {
         Part { label, opl: [edges[bins.start], edges[bins.end]], share, splits, factor }
     }
 
-    fn windows(&self, opls: &[f64]) -> Vec<Part> {
+    /// Bins between OPLs, with their label.
+    fn ranges(&self, opls: &[f64]) -> Vec<(Range<usize>, String)> {
         let edges = &self.truth.opl_edges;
         let bin = |opl: f64| edges.partition_point(|&edge| edge < opl - 1e-9).min(self.truth.bins);
         let ranges = opls.windows(2).map(|ends| bin(ends[0])..bin(ends[1]));
         ranges
             .filter(|bins| !bins.is_empty())
             .map(|bins| {
-                let noise = self.truth.noise(bins.clone(), true);
                 let label = format!("{:.2} to {:.2} m", edges[bins.start], edges[bins.end]);
-                self.part(label, bins.clone(), &noise, |p| Products::over(&p.frames, bins.clone()))
+                (bins, label)
             })
             .collect()
+    }
+
+    fn windows(&self, opls: &[f64]) -> Vec<Part> {
+        let part = |(bins, label): (Range<usize>, String)| {
+            let noise = self.truth.noise(bins.clone(), true);
+            self.part(label, bins.clone(), &noise, |p| Products::over(&p.frames, bins.clone()))
+        };
+        self.ranges(opls).into_iter().map(part).collect()
     }
 
     fn kinds(&self) -> Vec<Part> {
         if self.truth.kinds(0).is_empty() {
             return Vec::new();
         }
-        let part = |&kind: &Kind| {
-            let noise = self.truth.noise_of_kind(kind);
-            let label = kind.label().to_owned();
-            self.part(label, 0..self.truth.bins, &noise, |p| p.kinds[kind as usize].clone())
-        };
+        let part = |&kind: &Kind| self.kind(kind, kind.label().to_owned(), 0..self.truth.bins);
         Kind::ALL.iter().map(part).collect()
+    }
+
+    fn kinds_in_windows(&self, opls: &[f64]) -> Vec<Part> {
+        if self.truth.kinds(0).is_empty() {
+            return Vec::new();
+        }
+        let ranges = self.ranges(opls);
+        let part = |kind: Kind, (bins, label): &(Range<usize>, String)| {
+            self.kind(kind, format!("{}, {label}", kind.label()), bins.clone())
+        };
+        Kind::ALL
+            .into_iter()
+            .flat_map(|kind| ranges.iter().map(move |range| (kind, range)))
+            .map(|(kind, range)| part(kind, range))
+            .collect()
+    }
+
+    fn kind(&self, kind: Kind, label: String, bins: Range<usize>) -> Part {
+        let noise = self.truth.noise_of_kind(kind, bins.clone());
+        self.part(label, bins.clone(), &noise, |p| {
+            Products::over(&p.kinds[kind as usize], bins.clone())
+        })
+    }
+
+    fn lamps(&self, signal: f64) -> Option<Part> {
+        if self.truth.judged.iter().all(|&judged| judged) {
+            return None;
+        }
+        let noise = self.truth.noise_of_others();
+        let label = "pixels that see a lamp".to_owned();
+        let part = self.part(label, 0..self.truth.bins, &noise, |p| p.others.clone());
+        Some(Part { share: noise.signal() / signal, ..part })
     }
 
     fn frames(&self) -> Vec<Part> {

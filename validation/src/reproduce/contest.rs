@@ -26,6 +26,8 @@ use crate::watch::Watch;
 
 /// The film is read at these parts of the time.
 const READINGS: [f64; 3] = [0.25, 0.5, 1.0];
+/// Path tracing and beams.
+const METHODS: usize = 2;
 /// Time of the render of direct light, as a part of the others'.
 const DIRECT: f64 = 0.25;
 
@@ -74,6 +76,11 @@ pub struct Contested {
     pub truth: Truth,
     /// Replicates of each method.
     pub runs: Vec<Vec<Replicate>>,
+}
+
+/// Wall time of the renders of a comparison, the reference apart \[s\].
+pub fn seconds(time: Duration, replicates: u64) -> f64 {
+    time.as_secs_f64() * (METHODS as f64 * replicates as f64 + DIRECT)
 }
 
 impl Contest<'_> {
@@ -131,7 +138,7 @@ impl Contest<'_> {
     }
 }
 
-fn methods() -> [Estimator; 2] {
+fn methods() -> [Estimator; METHODS] {
     [Estimator::Path(PathOptions::default()), Estimator::Beams(BeamOptions::default())]
 }
 

@@ -13,17 +13,23 @@ use serde::{Deserialize, Serialize};
 use tpb_film::Arrays;
 
 use super::compare::Comparison;
-use super::contest::{Contest, Contested, Judge};
+use super::contest::{self, Contest, Contested, Judge};
 use super::race::first_with_variance;
-use super::{Options, folder, load, write_json};
+use super::{Options, SECONDS_PER_CELL, clear, folder, load, write_json};
 use crate::error::Result;
 use crate::suite::Circumstances;
-use crate::watch::Watch;
+use crate::watch::{Step, Watch};
 
 /// Its name, in files and pages.
 pub const NAME: &str = "cornell-blocks";
 /// Time of a run of the precise comparison, as a part of the others'.
 const PRECISE: f64 = 0.2;
+/// Its replicates, kept until all is written.
+const PRECISE_FOLDER: &str = "replicates-precise";
+/// What is done, in order.
+const SMALL_STEP: &str = "cornell-blocks: path and beams at equal time, at 64x64x200";
+const STEP: &str = "cornell-blocks: path and beams at equal time, at picture quality; reference";
+const PAGES_STEP: &str = "cornell-blocks: pictures and pages";
 /// Windows of time lie between these \[m\]; the first light is seen at 3.9 m.
 const WINDOWS: [f64; 9] = [3.85, 4.4, 4.9, 5.4, 6.0, 7.0, 8.5, 10.5, 14.0];
 
@@ -40,6 +46,22 @@ pub struct CornellResult {
     pub precise: Option<Comparison>,
 }
 
+/// What it takes.
+///
+/// # Errors
+/// If the scene cannot be loaded.
+pub fn steps(options: &Options) -> Result<Vec<Step>> {
+    let (time, replicates) = (options.time, options.replicates);
+    let mut steps = Vec::new();
+    if !options.is_trial() {
+        steps.push(Step::new(SMALL_STEP, contest::seconds(time.mul_f64(PRECISE), replicates)));
+    }
+    let reference = options.reference_time.as_secs_f64();
+    steps.push(Step::new(STEP, contest::seconds(time, replicates) + reference));
+    steps.push(Step::new(PAGES_STEP, options.cells(NAME)? * SECONDS_PER_CELL));
+    Ok(steps)
+}
+
 /// Renders, compares, and writes `cornell-blocks/` below the output folder. Each step is told.
 ///
 /// # Errors
@@ -49,7 +71,7 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<CornellResult> {
     let out = options.out.join(NAME);
     folder(&out)?;
     let precise = if options.is_trial() { None } else { Some(precise(options, &out, watch)?) };
-    watch.tell(&format!("{NAME}: path and beams at equal time, at picture quality"));
+    watch.begin(STEP)?;
     let loaded = options.load(NAME, &[])?;
     let absorbing = options.load(NAME, &["fog.albedo=0"])?;
     let reference = options.reference(&out);
@@ -72,9 +94,10 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<CornellResult> {
         precise,
     };
     write_json(&out.join("result.json"), &result)?;
-    watch.tell("  pictures and pages");
+    watch.begin(PAGES_STEP)?;
     pages::write(&out, &result, &Shown { reference: &reference, contested: &contested })?;
     contest.clear()?;
+    clear(&out.join(PRECISE_FOLDER))?;
     watch.tell(&format!("  wrote {}", out.join("index.html").display()));
     Ok(result)
 }
@@ -97,7 +120,7 @@ impl Shown<'_> {
 
 /// The same comparison at 64x64 pixels and 200 bins, against the reference that ships.
 fn precise(options: &Options, out: &Path, watch: &mut Watch<'_>) -> Result<Comparison> {
-    watch.tell(&format!("{NAME}: path and beams at equal time, at 64x64x200"));
+    watch.begin(SMALL_STEP)?;
     let data = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let scene = data.join("scenes").join(format!("{NAME}.json"));
     let (loaded, absorbing) = (load(&scene, &[])?, load(&scene, &["fog.albedo=0".to_owned()])?);
@@ -110,11 +133,10 @@ fn precise(options: &Options, out: &Path, watch: &mut Watch<'_>) -> Result<Compa
         commit: &options.circumstances.commit,
         judge: Judge::Shipped(data.join("references").join(format!("{NAME}.npz"))),
         windows: &WINDOWS,
-        folder: out.join("replicates-precise"),
+        folder: out.join(PRECISE_FOLDER),
     };
     let comparison = contest.run(watch)?.comparison;
     write_json(&out.join("precise.json"), &comparison)?;
-    contest.clear()?;
     Ok(comparison)
 }
 

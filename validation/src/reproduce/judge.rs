@@ -20,10 +20,10 @@ const CHUNKS: usize = 64;
 pub struct Products {
     /// Of judged pixels, for each bin.
     pub frames: Vec<Gram>,
-    /// Of all pixels, for each bin.
-    pub frames_whole: Vec<Gram>,
-    /// Of judged pixels, for each kind of cells.
-    pub kinds: Vec<Gram>,
+    /// Of all other pixels, over all bins.
+    pub others: Gram,
+    /// Of judged pixels, for each kind of cells and each bin.
+    pub kinds: Vec<Vec<Gram>>,
     /// Variance over replicates of each pixel, summed over bins.
     pub variance: Vec<f64>,
     /// Residual of each pixel's energy within the window, for each replicate.
@@ -33,7 +33,8 @@ pub struct Products {
 /// Sums over a chunk of pixels.
 struct Sums {
     frames: Vec<f64>,
-    frames_whole: Vec<f64>,
+    others: Vec<f64>,
+    /// (kind, bin).
     kinds: Vec<f64>,
     variance: Vec<f64>,
     window: Vec<f64>,
@@ -61,29 +62,37 @@ impl Products {
             .collect();
         let square = n * n;
         let mut frames = vec![0.0; truth.bins * square];
-        let (mut frames_whole, mut kinds) = (frames.clone(), vec![0.0; Kind::ALL.len() * square]);
+        let mut kinds = vec![0.0; Kind::ALL.len() * truth.bins * square];
+        let mut others = vec![0.0; square];
         let mut variance = Vec::with_capacity(truth.pixels());
         let mut window_residuals = vec![Vec::with_capacity(truth.pixels()); n];
         let add = |to: &mut [f64], from: &[f64]| to.iter_mut().zip(from).for_each(|(a, b)| *a += b);
         for part in parts {
             add(&mut frames, &part.frames);
-            add(&mut frames_whole, &part.frames_whole);
+            add(&mut others, &part.others);
             add(&mut kinds, &part.kinds);
             variance.extend(part.variance);
             for pixel in part.window.chunks_exact(n) {
                 window_residuals.iter_mut().zip(pixel).for_each(|(all, &one)| all.push(one));
             }
         }
-        let grams = |products: Vec<f64>| -> Vec<Gram> {
+        let grams = |products: &[f64]| -> Vec<Gram> {
             products.chunks_exact(square).map(|p| Gram::from_products(n, p.to_vec())).collect()
         };
         Ok(Self {
-            frames: grams(frames),
-            frames_whole: grams(frames_whole),
-            kinds: grams(kinds),
+            frames: grams(&frames),
+            others: Gram::from_products(n, others),
+            kinds: kinds.chunks_exact(truth.bins * square).map(grams).collect(),
             variance,
             window_residuals,
         })
+    }
+
+    /// Of all pixels, over all bins.
+    pub fn whole(&self) -> Gram {
+        let mut sum = Self::over(&self.frames, 0..self.frames.len());
+        sum.add(&self.others);
+        sum
     }
 
     /// Over a range of bins.
@@ -102,8 +111,8 @@ impl Sums {
         let square = n * n;
         let mut sums = Self {
             frames: vec![0.0; bins * square],
-            frames_whole: vec![0.0; bins * square],
-            kinds: vec![0.0; Kind::ALL.len() * square],
+            others: vec![0.0; square],
+            kinds: vec![0.0; Kind::ALL.len() * bins * square],
             variance: Vec::with_capacity(pixels.len()),
             window: Vec::with_capacity(pixels.len() * n),
         };
@@ -127,13 +136,14 @@ impl Sums {
                 let add = |to: &mut [f64]| {
                     to.iter_mut().zip(&products).for_each(|(sum, product)| *sum += product);
                 };
-                add(&mut sums.frames_whole[place.clone()]);
                 if judged {
                     add(&mut sums.frames[place]);
                     if let Some(&kind) = kinds.get(bin) {
-                        let first = kind as usize * square;
+                        let first = (kind as usize * bins + bin) * square;
                         add(&mut sums.kinds[first..first + square]);
                     }
+                } else {
+                    add(&mut sums.others);
                 }
                 variance += sample_variance(&residuals, bin);
             }

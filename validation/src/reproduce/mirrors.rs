@@ -21,13 +21,13 @@ use tpb_film::{Arrays, Quantity, TimeAxis};
 use tpb_scene::load::LoadedScene;
 
 use super::compare::Comparison;
-use super::contest::{Contest, Judge};
+use super::contest::{self, Contest, Judge};
 use super::race::{Race, Spent};
-use super::{Options, folder, write_json};
+use super::{Options, SECONDS_PER_CELL, clear, folder, write_json};
 use crate::error::{Result, ValidationError};
 use crate::measure::{Estimator, layout};
 use crate::suite::Circumstances;
-use crate::watch::Watch;
+use crate::watch::{Step, Watch};
 use caustics::{Caustics, CausticsPlan};
 use delay::Delay;
 use room::{Event, Room};
@@ -43,8 +43,20 @@ const CAUSTICS: f64 = 1.0;
 const CAUSTICS_POINT: f64 = 0.5;
 const RACE: f64 = 0.2;
 const REFERENCE: f64 = 3.0;
+/// Methods of a caustic comparison: path, light, beams, and beams once more.
+const CAUSTIC_RENDERS: f64 = 4.0;
+/// What is done, in order, and about how long the delay takes \[s\].
+const DELAY_STEP: (&str, f64) = ("mirrors: the delay behind the ball", 5.0);
+const TWIN_STEP: &str = "mirrors-area: caustics by three methods";
+const POINT_STEP: &str = "mirrors: caustics of the point lamp";
+const RACE_STEP: &str = "mirrors-area: path and beams at equal time; reference";
+const SEQUENCE_STEP: &str = "mirrors: the sequence, by photon beams";
+const PAGES_STEP: &str = "mirrors: pictures and pages";
 /// Film of the comparisons: pixels on a side, bins over the scene's window.
 const SMALL: (usize, usize) = (64, 160);
+/// Renders that are kept until all is written.
+const CAUSTICS_FOLDER: &str = "caustics";
+const RACE_FOLDER: &str = "replicates-area";
 /// Windows of time lie between these \[m\].
 const WINDOWS: [f64; 8] = [3.9, 4.5, 5.0, 5.5, 6.0, 6.5, 7.5, 10.0];
 
@@ -69,6 +81,23 @@ pub struct MirrorsResult {
     pub equal_time: Comparison,
 }
 
+/// What it takes.
+///
+/// # Errors
+/// If the scene cannot be loaded.
+pub fn steps(options: &Options) -> Result<Vec<Step>> {
+    let time = options.time.as_secs_f64();
+    let race = contest::seconds(options.time.mul_f64(RACE), options.replicates);
+    Ok(vec![
+        Step::new(DELAY_STEP.0, DELAY_STEP.1),
+        Step::new(TWIN_STEP, CAUSTIC_RENDERS * CAUSTICS * time),
+        Step::new(POINT_STEP, CAUSTIC_RENDERS * CAUSTICS_POINT * time),
+        Step::new(RACE_STEP, race + REFERENCE * time),
+        Step::new(SEQUENCE_STEP, SEQUENCE * time),
+        Step::new(PAGES_STEP, options.cells(NAME)? * SECONDS_PER_CELL),
+    ])
+}
+
 /// Renders, measures, and writes `mirrors/` below the output folder. Each step is told.
 ///
 /// # Errors
@@ -79,21 +108,22 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<MirrorsResult> {
     folder(&out)?;
     let loaded = options.load(NAME, &[])?;
     let room = Room::of(&loaded)?;
-    watch.tell(&format!("{NAME}: the delay behind the ball"));
+    watch.begin(DELAY_STEP.0)?;
     let delays = delay::measure(options, &room, watch)?;
     write_json(&out.join("delay.json"), &delays)?;
-    watch.tell(&format!("{NAME}: caustics of {TWIN} by three methods"));
+    watch.begin(TWIN_STEP)?;
     let small = small(options);
     let (twin, arrays) = caustics(&small, TWIN, &room, CAUSTICS, watch)?;
     write_json(&out.join("caustics-area.json"), &twin)?;
-    pages::caustics_viewer(&out, &small, &twin, &arrays)?;
+    let about_caustics = pages::caustics_viewer(&out, &small, &twin, &arrays)?;
     drop(arrays);
-    watch.tell(&format!("{NAME}: caustics of the point lamp"));
+    watch.begin(POINT_STEP)?;
     let (point, _) = caustics(&small, NAME, &room, CAUSTICS_POINT, watch)?;
     write_json(&out.join("caustics-point.json"), &point)?;
+    watch.begin(RACE_STEP)?;
     let equal_time = equal_time(&small, &out, watch)?;
     write_json(&out.join("equal-time.json"), &equal_time)?;
-    watch.tell(&format!("{NAME}: the sequence, by photon beams"));
+    watch.begin(SEQUENCE_STEP)?;
     let methods = [Estimator::Beams(BeamOptions::default())];
     let race = sequence(options, &loaded, &methods, &out);
     let found = race.run(watch)?;
@@ -110,9 +140,12 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<MirrorsResult> {
         equal_time,
     };
     write_json(&out.join("result.json"), &result)?;
-    watch.tell("  pictures and pages");
-    pages::write(&out, &result, arrays)?;
+    watch.begin(PAGES_STEP)?;
+    pages::write(&out, &result, arrays, &about_caustics)?;
     race.clear()?;
+    for kept in [CAUSTICS_FOLDER, RACE_FOLDER] {
+        clear(&out.join(kept))?;
+    }
     watch.tell(&format!("  wrote {}", out.join("index.html").display()));
     Ok(result)
 }
@@ -153,13 +186,19 @@ fn caustics(
 ) -> Result<(Caustics, Vec<Arrays>)> {
     let loaded = options.load(scene, &[])?;
     let time: Duration = options.time.mul_f64(part);
-    let plan =
-        CausticsPlan { name: scene, loaded: &loaded, room, time, seed: options.circumstances.seed };
+    let plan = CausticsPlan {
+        name: scene,
+        loaded: &loaded,
+        room,
+        time,
+        seed: options.circumstances.seed,
+        commit: &options.circumstances.commit,
+        folder: &options.out.join(NAME).join(CAUSTICS_FOLDER),
+    };
     plan.run(watch)
 }
 
 fn equal_time(options: &Options, out: &Path, watch: &mut Watch<'_>) -> Result<Comparison> {
-    watch.tell(&format!("{TWIN}: path and beams at equal time"));
     let (loaded, absorbing) = (options.load(TWIN, &[])?, options.load(TWIN, &["fog.albedo=0"])?);
     let contest = Contest {
         loaded: &loaded,
@@ -173,11 +212,9 @@ fn equal_time(options: &Options, out: &Path, watch: &mut Watch<'_>) -> Result<Co
             time: options.time.mul_f64(REFERENCE),
         },
         windows: &WINDOWS,
-        folder: out.join("replicates-area"),
+        folder: out.join(RACE_FOLDER),
     };
-    let comparison = contest.run(watch)?.comparison;
-    contest.clear()?;
-    Ok(comparison)
+    Ok(contest.run(watch)?.comparison)
 }
 
 /// Empty arrays with the shape and the edges of a scene's film.

@@ -14,7 +14,8 @@
 //! | [`race`], [`halves`] | renders at equal time, and how they are kept |
 //! | [`contest`], [`judge`], [`compare`] | errors, their parts, their ratios |
 //! | [`maps`], [`charts`], [`picture`], [`colour`], [`page`] | what is looked at |
-//! | [`summary`] | the pages over all scenes, and the table of who wins where |
+//! | [`session`] | a run over all figures, which may be interrupted |
+//! | [`summary`], [`losses`] | the pages over all scenes, the tables of who wins where, and why |
 
 pub mod charts;
 pub mod colour;
@@ -23,12 +24,14 @@ pub mod contest;
 pub mod cornell;
 pub mod halves;
 pub mod judge;
+pub mod losses;
 pub mod maps;
 pub mod mirrors;
 pub mod page;
 pub mod picture;
 pub mod race;
 mod report;
+pub mod session;
 pub mod summary;
 mod tables;
 #[cfg(test)]
@@ -81,6 +84,12 @@ impl Options {
         load(&path, &self.changes(&path, changes)?)
     }
 
+    /// Cells of a scene's film.
+    pub(crate) fn cells(&self, name: &str) -> Result<f64> {
+        let film = self.load(name, &[])?.scene.film;
+        Ok((film.width * film.height * film.time.map_or(0, |time| time.bins)) as f64)
+    }
+
     /// The file of a scene's reference in its folder; trials have others.
     pub(crate) fn reference(&self, folder: &Path) -> PathBuf {
         let size = |n: Option<usize>| n.map_or(String::new(), |n| format!("-{n}"));
@@ -102,6 +111,10 @@ impl Options {
         Ok(all)
     }
 }
+
+/// Wall time to judge, draw and pack a comparison, for each cell of its film \[s\]; measured on two
+/// cores.
+pub(crate) const SECONDS_PER_CELL: f64 = 4e-6;
 
 /// A scene file with changes.
 pub(crate) fn load(path: &Path, changes: &[String]) -> Result<LoadedScene> {
@@ -131,6 +144,16 @@ pub(crate) fn write_text(path: &Path, text: &str) -> Result<()> {
 pub(crate) fn folder(path: &Path) -> Result<()> {
     fs::create_dir_all(path).map_err(|error| ValidationError::io(path, error))?;
     crate::suite::probe(path)
+}
+
+/// Removes a folder of renders that are not wanted any more, if it is there.
+pub(crate) fn clear(path: &Path) -> Result<()> {
+    match fs::remove_dir_all(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(ValidationError::io(path, error))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The bin that holds an OPL; the nearest one if none does.

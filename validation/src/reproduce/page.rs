@@ -1,5 +1,8 @@
 //! Self-contained HTML pages: text, tables, pictures and charts inside one file, in the colours of
 //! the comparison page, dark and light, for wide and narrow screens.
+//!
+//! A page stays below the budget of a viewer's page: where its pictures are too large for that, all
+//! of them are shown smaller, by the same whole number, and the page says so.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -8,9 +11,15 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use tpb_film::atomic_write;
 use tpb_page::escape;
+use tpb_viewer::DEFAULT_BUDGET;
 
 use super::picture::Picture;
-use crate::error::Result;
+use crate::error::{Result, ValidationError};
+
+/// Pictures are shown this many times smaller at most.
+const SMALLEST: usize = 64;
+/// Longer cells of tables are sentences.
+const WORDS: usize = 48;
 
 /// Layout; colours come from the theme.
 const STYLE: &str = "
@@ -27,6 +36,7 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 caption { text-align: left; color: var(--muted); padding-bottom: .4rem; }
 th, td { padding: .2rem .6rem; text-align: right; border-bottom: 1px solid var(--line); white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
+td.words { white-space: normal; text-align: left; min-width: 18rem; }
 table.pictures th, table.pictures td { border: 0; padding: 2px; text-align: center; font-size: .85rem;
   font-weight: 500; }
 table.pictures th[scope=row] { writing-mode: vertical-rl; transform: rotate(180deg); color: var(--muted); }
@@ -47,53 +57,83 @@ dt { color: var(--muted); } dd { margin: 0; overflow-wrap: anywhere; }
 #[derive(Clone, Debug)]
 pub struct Page {
     title: String,
-    body: String,
+    parts: Vec<Part>,
+}
+
+/// What a page consists of.
+#[derive(Clone, Debug)]
+enum Part {
+    Html(String),
+    /// A picture that may be shown smaller, and its text.
+    Picture(Picture, String),
+}
+
+/// A written page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// Its size \[bytes\].
+    pub bytes: usize,
+    /// Side of the squares of pixels that its pictures show as one.
+    pub reduced: usize,
 }
 
 impl Page {
     /// An empty page with its heading.
     pub fn new(title: &str) -> Self {
-        Self { title: title.to_owned(), body: format!("<h1>{}</h1>\n", escape(title)) }
+        let heading = Part::Html(format!("<h1>{}</h1>\n", escape(title)));
+        Self { title: title.to_owned(), parts: vec![heading] }
+    }
+
+    fn push(&mut self, html: String) {
+        self.parts.push(Part::Html(html));
     }
 
     /// A heading.
     pub fn heading(&mut self, text: &str) {
-        let _ = writeln!(self.body, "<h2>{}</h2>", escape(text));
+        self.push(format!("<h2>{}</h2>\n", escape(text)));
     }
 
     /// A paragraph.
     pub fn text(&mut self, text: &str) {
-        let _ = writeln!(self.body, "<p>{}</p>", escape(text));
+        self.push(format!("<p>{}</p>\n", escape(text)));
     }
 
     /// A remark in small print.
     pub fn note(&mut self, text: &str) {
-        let _ = writeln!(self.body, "<p class=\"note\">{}</p>", escape(text));
+        self.push(format!("<p class=\"note\">{}</p>\n", escape(text)));
     }
 
     /// A list.
     pub fn list(&mut self, items: &[String]) {
         let items = joined(items, |item| format!("<li>{}</li>", escape(item)));
-        let _ = writeln!(self.body, "<ul>{items}</ul>");
+        self.push(format!("<ul>{items}</ul>\n"));
     }
 
     /// A link on a line of its own.
     pub fn link(&mut self, target: &str, text: &str) {
-        let _ = writeln!(self.body, "<p><a href=\"{}\">{}</a></p>", escape(target), escape(text));
+        self.push(format!("<p><a href=\"{}\">{}</a></p>\n", escape(target), escape(text)));
+    }
+
+    /// A link, and what is to be known of it before one follows it.
+    pub fn link_with(&mut self, target: &str, text: &str, about: &str) {
+        let (target, text, about) = (escape(target), escape(text), escape(about));
+        self.push(format!(
+            "<p><a href=\"{target}\">{text}</a> <span class=\"note\">({about})</span></p>\n"
+        ));
     }
 
     /// A table; the first column names the rows.
     pub fn table(&mut self, caption: &str, head: &[&str], rows: &[Vec<String>]) {
         let head = joined(head, |cell| format!("<th scope=\"col\">{}</th>", escape(cell)));
-        let row = |row: &Vec<String>| {
-            format!("<tr>{}</tr>\n", joined(row, |cell| format!("<td>{}</td>", escape(cell))))
+        let cell = |cell: &String| {
+            let class = if cell.len() > WORDS { " class=\"words\"" } else { "" };
+            format!("<td{class}>{}</td>", escape(cell))
         };
-        let rows = joined(rows, row);
-        let _ = writeln!(
-            self.body,
-            "<div class=\"wide\"><table><caption>{}</caption><thead><tr>{head}</tr></thead><tbody>\n{rows}</tbody></table></div>",
+        let rows = joined(rows, |row| format!("<tr>{}</tr>\n", joined(row, cell)));
+        self.push(format!(
+            "<div class=\"wide\"><table><caption>{}</caption><thead><tr>{head}</tr></thead><tbody>\n{rows}</tbody></table></div>\n",
             escape(caption)
-        );
+        ));
     }
 
     /// Pictures in rows and columns with names; each has a text for those who cannot see it.
@@ -102,40 +142,41 @@ impl Page {
         caption: &str,
         columns: &[String],
         rows: &[(String, Vec<(Picture, String)>)],
-    ) -> Result<()> {
+    ) {
         let head = joined(columns, |c| format!("<th scope=\"col\">{}</th>", escape(c)));
-        let mut lines = String::new();
+        self.push(format!(
+            "<figure><div class=\"wide\"><table class=\"pictures\"><thead><tr><td></td>{head}</tr></thead><tbody>\n"
+        ));
         for (name, pictures) in rows {
-            let _ = write!(lines, "<tr><th scope=\"row\">{}</th>", escape(name));
+            self.push(format!("<tr><th scope=\"row\">{}</th>", escape(name)));
             for (picture, alt) in pictures {
-                let _ = write!(lines, "<td>{}</td>", image(&picture.png()?, "image/png", alt, ""));
+                self.push("<td>".to_owned());
+                self.parts.push(Part::Picture(picture.clone(), alt.clone()));
+                self.push("</td>".to_owned());
             }
-            lines.push_str("</tr>\n");
+            self.push("</tr>\n".to_owned());
         }
-        let _ = writeln!(
-            self.body,
-            "<figure><div class=\"wide\"><table class=\"pictures\"><thead><tr><td></td>{head}</tr></thead><tbody>\n{lines}</tbody></table></div><figcaption>{}</figcaption></figure>",
+        self.push(format!(
+            "</tbody></table></div><figcaption>{}</figcaption></figure>\n",
             escape(caption)
-        );
-        Ok(())
+        ));
     }
 
     /// A colour scale with what its ends mean.
     pub fn scale(&mut self, bar: &Picture, low: &str, high: &str) -> Result<()> {
         let alt = format!("colour scale from {low} to {high}");
         let bar = image(&bar.png()?, "image/png", &alt, "scale");
-        let _ = writeln!(self.body, "<p class=\"note\">{} {bar} {}</p>", escape(low), escape(high));
+        self.push(format!("<p class=\"note\">{} {bar} {}</p>\n", escape(low), escape(high)));
         Ok(())
     }
 
     /// A chart.
     pub fn chart(&mut self, svg: &str, alt: &str) {
         let picture = image(svg.as_bytes(), "image/svg+xml", alt, "chart");
-        let _ = writeln!(
-            self.body,
-            "<figure><div class=\"wide\">{picture}</div><figcaption>{}</figcaption></figure>",
+        self.push(format!(
+            "<figure><div class=\"wide\">{picture}</div><figcaption>{}</figcaption></figure>\n",
             escape(alt)
-        );
+        ));
     }
 
     /// Names and values.
@@ -143,31 +184,69 @@ impl Page {
         let facts = joined(facts, |(name, value)| {
             format!("<dt>{}</dt><dd>{}</dd>\n", escape(name), escape(value))
         });
-        let _ = writeln!(self.body, "<dl>{facts}</dl>");
+        self.push(format!("<dl>{facts}</dl>\n"));
     }
 
     /// A command to be copied.
     pub fn command(&mut self, command: &str) {
-        let _ = writeln!(self.body, "<p><code>{}</code></p>", escape(command));
+        self.push(format!("<p><code>{}</code></p>\n", escape(command)));
     }
 
-    /// The whole text.
-    pub fn html(&self) -> String {
-        format!(
+    /// The whole text, with pictures as large as the budget \[bytes\] allows.
+    ///
+    /// # Errors
+    /// If it does not fit even with the smallest.
+    pub fn html(&self, budget: usize) -> Result<(String, Written)> {
+        let mut bytes = 0;
+        for reduced in 1..=SMALLEST {
+            let html = self.with_pictures(reduced)?;
+            bytes = html.len();
+            if bytes <= budget {
+                return Ok((html, Written { bytes, reduced }));
+            }
+        }
+        let reason = format!("takes {bytes} bytes, more than the {budget} that it may");
+        Err(ValidationError::unusable(&self.title, reason))
+    }
+
+    fn with_pictures(&self, reduced: usize) -> Result<String> {
+        let mut body = String::new();
+        for part in &self.parts {
+            match part {
+                Part::Html(html) => body.push_str(html),
+                Part::Picture(picture, alt) if reduced == 1 => {
+                    body.push_str(&image(&picture.png()?, "image/png", alt, ""));
+                }
+                Part::Picture(picture, alt) => {
+                    body.push_str(&image(&picture.reduced(reduced).png()?, "image/png", alt, ""));
+                }
+            }
+        }
+        if reduced > 1 {
+            let _ = writeln!(
+                body,
+                "<p class=\"note\">To keep this page small, its pictures show squares of \
+                 {reduced} \u{d7} {reduced} pixels as one; the files beside it have all.</p>"
+            );
+        }
+        Ok(format!(
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
              <link rel=\"icon\" href=\"data:,\">\n\
-             <title>{}</title>\n<style>\n{}{STYLE}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n</html>\n",
+             <title>{}</title>\n<style>\n{}{STYLE}</style>\n</head>\n<body>\n<main>\n{body}</main>\n</body>\n</html>\n",
             escape(&self.title),
             tpb_page::THEME,
-            self.body
-        )
+        ))
     }
 
-    /// Writes it, whole or not at all.
-    pub fn write(&self, path: &Path) -> Result<()> {
-        let html = self.html();
-        Ok(atomic_write(path, |file| std::io::Write::write_all(file, html.as_bytes()))?)
+    /// Writes it, whole or not at all, within the budget of a viewer's page.
+    ///
+    /// # Errors
+    /// Those of [`Page::html`], and if the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<Written> {
+        let (html, written) = self.html(DEFAULT_BUDGET)?;
+        atomic_write(path, |file| std::io::Write::write_all(file, html.as_bytes()))?;
+        Ok(written)
     }
 }
 
@@ -197,13 +276,13 @@ mod tests {
         page.table("Numbers", &["name", "value"], &[vec!["x".into(), "1".into()]]);
         let picture = Picture::filled(2, 2, [1, 2, 3]);
         let rows = [("beams".to_owned(), vec![(picture.clone(), "a \"frame\"".to_owned())])];
-        page.pictures("Caption", &["4.2 m".to_owned()], &rows).unwrap();
+        page.pictures("Caption", &["4.2 m".to_owned()], &rows);
         page.scale(&picture, "0", "1").unwrap();
         page.chart("<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>", "a curve");
         page.facts(&[("commit", "abc".into())]);
         page.command("cargo xtask reproduce");
         page.link("viewer.html", "viewer");
-        let html = page.html();
+        let html = page.html(DEFAULT_BUDGET).unwrap().0;
         for part in [
             "<title>A &lt;b&gt; &amp; &quot;c&quot;</title>",
             "1 &lt; 2",
@@ -217,5 +296,29 @@ mod tests {
         }
         assert!(!html.contains("src=\"http") && !html.contains("url("));
         assert_eq!(html.matches("<img").count(), html.matches(" alt=\"").count());
+    }
+
+    #[test]
+    fn the_budget_is_kept_by_smaller_pictures_and_the_page_says_so() {
+        // Noise, which no code makes small: 3 bytes for each pixel, and a third for base64.
+        let mut rng = tpb_optics::Stream::new(3, 0, 0);
+        let mut random = || (256.0 * rng.uniform()) as u8;
+        let mut noise = Picture::filled(96, 96, [0; 3]);
+        noise.pixels.iter_mut().flatten().for_each(|value| *value = random());
+        let mut page = Page::new("Noise");
+        page.pictures("Caption", &[], &[("noise".into(), vec![(noise, "noise".into())])]);
+        let (whole, written) = page.html(DEFAULT_BUDGET).unwrap();
+        assert_eq!(written, Written { bytes: whole.len(), reduced: 1 });
+        assert!(!whole.contains("To keep this page small"));
+        let bare = Page::new("Noise").html(DEFAULT_BUDGET).unwrap().1.bytes;
+        for (budget, reduced) in
+            [(whole.len(), 1..=1), (whole.len() - 1, 2..=2), (bare + 2_000, 4..=7)]
+        {
+            let (html, written) = page.html(budget).unwrap();
+            assert!(html.len() <= budget && written.bytes == html.len());
+            assert_eq!(written.reduced > 1, html.contains("To keep this page small"));
+            assert!(reduced.contains(&written.reduced), "{written:?}");
+        }
+        assert!(page.html(bare).is_err());
     }
 }

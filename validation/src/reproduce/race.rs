@@ -108,12 +108,12 @@ impl Race<'_> {
                 let seed = self.seed + number * self.methods.len() as u64 + index as u64;
                 let path = self.folder.join(format!("{}-{number}.npz", estimator.name()));
                 let key = self.key(estimator, seed);
-                let (record, how) = match read_record(&path).filter(|kept| kept.is_of(&key)) {
-                    Some(record) => (record, "kept from an earlier run"),
-                    None => {
-                        watch.go_on()?;
-                        (self.render(estimator, key, &path)?, "done")
-                    }
+                let kept = read_record(&path).filter(|kept| kept.is_of(&key));
+                let (record, how) = if let Some(record) = kept {
+                    (record, "kept from an earlier run")
+                } else {
+                    watch.go_on()?;
+                    (self.render(estimator, key, &path)?, "done")
                 };
                 let spent = record.spent.last().copied().unwrap_or_default();
                 watch.tell(&format!(

@@ -2,10 +2,13 @@
 
 use std::path::Path;
 
-use super::compare::Comparison;
+use tpb_viewer::{Factors, PageReport};
+
+use super::compare::{Comparison, Part};
+use super::losses::losses;
 use super::page::Page;
 use super::{charts, tables, write_text};
-use crate::error::Result;
+use crate::error::{Result, ValidationError};
 use crate::statistics::Winner;
 use crate::suite::Circumstances;
 
@@ -20,9 +23,12 @@ pub(crate) fn numbers(page: &mut Page, comparison: &Comparison) {
         &tables::BY_TIME,
         &tables::by_time(comparison),
     );
+    let lamps: Vec<Part> = comparison.lamps.iter().cloned().collect();
     for (what, caption, parts) in [
         ("OPL", "By window of time, at the whole render time", &comparison.windows),
         ("cells", "By kind of cell: where beams win, and where they lose", &comparison.kinds),
+        ("pixels", "Pixels that are not judged; share of all pixels' \u{3a3}r\u{b2}", &lamps),
+        ("cells, OPL", "By kind of cell and window of time", &comparison.kinds_in_windows),
     ] {
         if !parts.is_empty() {
             let heads = tables::by_part_heads(what, comparison);
@@ -30,7 +36,21 @@ pub(crate) fn numbers(page: &mut Page, comparison: &Comparison) {
             page.table(caption, &heads, &tables::by_part(comparison, parts));
         }
     }
+    lost(page, comparison);
     page.list(&[tables::won(comparison, Winner::First), tables::won(comparison, Winner::Second)]);
+}
+
+/// Where beams lose, and why; or that nothing such was found.
+pub(crate) fn lost(page: &mut Page, comparison: &Comparison) {
+    let rows: Vec<Vec<String>> = losses(comparison).into_iter().map(tables::loss).collect();
+    if rows.is_empty() {
+        page.note(
+            "No kind of cell, window of time or kind within a window was found in which beams lose, \
+             each with its interval.",
+        );
+        return;
+    }
+    page.table("Where beams lose, each with its interval, and why", &tables::LOSS, &rows);
 }
 
 /// Charts, in the page and as files whose names end with the suffix.
@@ -73,6 +93,30 @@ pub(crate) fn curves(
     Ok(())
 }
 
+/// Writes a viewer's page; what is to be said of it where it is linked.
+pub(crate) fn viewer(path: &Path, comparison: &tpb_viewer::Comparison<'_>) -> Result<String> {
+    let written = tpb_viewer::write_comparison(path, comparison)
+        .map_err(|error| ValidationError::unusable("viewer page", error))?;
+    Ok(shown(&written))
+}
+
+fn shown(written: &PageReport) -> String {
+    let size = written.bytes as f64 / 1e6;
+    let shape = |[rows, columns, bins]: [usize; 3]| {
+        format!("{columns} \u{d7} {rows} pixels \u{d7} {bins} bins")
+    };
+    if written.factors == Factors::NONE {
+        return format!("{size:.1} MB, {}: all that was rendered", shape(written.rendered));
+    }
+    let Factors { pixels, bins } = written.factors;
+    format!(
+        "{size:.1} MB, {}, reduced from {} to keep the page small: means of {pixels} \u{d7} {pixels} \
+         pixels, sums of {bins} bins; error numbers are of the full arrays",
+        shape(written.shown),
+        shape(written.rendered)
+    )
+}
+
 /// What the viewer shows of it.
 pub(crate) fn provenance_of(circumstances: &Circumstances) -> Vec<(String, String)> {
     vec![
@@ -108,4 +152,32 @@ pub(crate) fn provenance(
     facts.extend(more.iter().cloned());
     page.facts(&facts);
     page.command(command);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reproduce::testing::arrays;
+
+    #[test]
+    fn a_viewer_that_had_to_be_reduced_says_so_where_it_is_linked() {
+        let folder = std::env::temp_dir().join(format!("tpb-viewer-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let file = folder.join("viewer.html");
+        let arrays = arrays(24, 16, 30, 3);
+        let method = tpb_viewer::Method::new("a", "A", &arrays);
+        let mut comparison = tpb_viewer::Comparison::new("reduced", vec![method]);
+        assert_eq!(comparison.budget_bytes, 20_000_000, "the budget of a page");
+        let whole = viewer(&file, &comparison).unwrap();
+        assert!(
+            whole.ends_with("24 \u{d7} 16 pixels \u{d7} 30 bins: all that was rendered"),
+            "{whole}"
+        );
+        comparison.budget_bytes = std::fs::metadata(&file).unwrap().len() as usize - 1;
+        let reduced = viewer(&file, &comparison).unwrap();
+        let bytes = std::fs::metadata(&file).unwrap().len() as usize;
+        std::fs::remove_dir_all(&folder).unwrap();
+        assert!(bytes <= comparison.budget_bytes);
+        assert!(reduced.contains("reduced from 24 \u{d7} 16 pixels \u{d7} 30 bins"), "{reduced}");
+    }
 }

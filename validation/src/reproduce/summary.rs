@@ -1,4 +1,5 @@
-//! All scenes together: the table of who wins where, as a page, as text, and as Markdown.
+//! All scenes together: who wins where, whether caustics agree, and the delay in glass; as a page, as
+//! Markdown, and as JSON.
 
 use std::path::Path;
 
@@ -6,12 +7,13 @@ use serde::{Deserialize, Serialize};
 
 use super::compare::Comparison;
 use super::cornell::{self, CornellResult};
+use super::losses::losses;
+use super::mirrors::caustics::{BEAMS_LIGHT, Caustics, LIGHT_PATH, LIMIT_LIGHT, MARGIN};
 use super::mirrors::{self, MirrorsResult};
 use super::page::Page;
-use super::{report, tables, write_json, write_text};
+use super::{Options, report, tables, write_json, write_text};
 use crate::error::Result;
 use crate::statistics::{Factor, Winner};
-use crate::suite::Circumstances;
 
 /// Where each scene's files are.
 const PAGE: &str = "index.html";
@@ -25,21 +27,28 @@ pub struct Summary {
     pub mirrors: Option<MirrorsResult>,
 }
 
-/// A line of the table: a method on a scene.
+/// A table over all scenes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Line {
-    /// Scene and film.
-    pub scene: String,
-    /// Method.
-    pub method: String,
-    /// CPU time of a run \[s\].
-    pub cpu_seconds: String,
-    /// NMSE with its interval.
-    pub error: String,
-    /// Times less error of beams over path.
-    pub factor: String,
-    /// Kinds of cells and windows of time in which path tracing has less error.
-    pub lost: String,
+pub struct Table {
+    /// What it shows.
+    pub caption: String,
+    /// Heads of its columns.
+    pub heads: Vec<String>,
+    /// Its rows.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    fn new<const N: usize>(caption: String, heads: [&str; N], rows: Vec<Vec<String>>) -> Self {
+        Self { caption, heads: heads.map(str::to_owned).to_vec(), rows }
+    }
+
+    fn markdown(&self) -> String {
+        let row = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        let rule: Vec<String> = self.heads.iter().map(|_| "---".to_owned()).collect();
+        let rows: Vec<String> = self.rows.iter().map(|cells| row(cells)).collect();
+        format!("{}:\n\n{}{}{}", self.caption, row(&self.heads), row(&rule), rows.concat())
+    }
 }
 
 impl Summary {
@@ -68,41 +77,78 @@ impl Summary {
         list
     }
 
-    /// The table: a line for each scene and method.
-    pub fn lines(&self) -> Vec<Line> {
-        let lines = |(scene, c): (String, &Comparison)| -> Vec<Line> {
-            let whole = c.whole();
-            let line = |(index, method): (usize, &String)| Line {
-                scene: scene.clone(),
-                method: method.clone(),
-                cpu_seconds: format!("{:.1}", whole.methods[index].spent.cpu_seconds),
-                error: tables::interval(&whole.methods[index].judged.nmse),
-                factor: if index == 1 { factor(c) } else { String::new() },
-                lost: if index == 1 { lost(c) } else { String::new() },
-            };
-            c.methods.iter().enumerate().map(line).collect()
-        };
-        self.comparisons().into_iter().flat_map(lines).collect()
+    /// Equal time, where beams lose, caustics, delays: those that there is something to say of.
+    pub fn tables(&self) -> Vec<Table> {
+        let mut all = vec![self.equal_time(), self.lost()];
+        if let Some(mirrors) = &self.mirrors {
+            all.extend([&mirrors.twin, &mirrors.point].map(caustics));
+            all.push(delays(mirrors));
+        }
+        all.retain(|table| !table.rows.is_empty());
+        all
     }
 
-    /// The table as Markdown.
-    pub fn markdown(&self) -> String {
-        let head = "| scene | method | CPU s | NMSE (95 % interval) | times less error | beams lose in |\n\
-                    | --- | --- | ---: | ---: | ---: | --- |\n";
-        let row = |l: Line| {
-            let Line { scene, method, cpu_seconds, error, factor, lost } = l;
-            format!("| {scene} | {method} | {cpu_seconds} | {error} | {factor} | {lost} |\n")
+    /// A row for each scene and method.
+    fn equal_time(&self) -> Table {
+        let rows = |(scene, c): (String, &Comparison)| -> Vec<Vec<String>> {
+            let whole = c.whole();
+            let row = |(index, method): (usize, &String)| {
+                let standing = &whole.methods[index];
+                let mut row = vec![
+                    scene.clone(),
+                    method.clone(),
+                    format!("{:.1}", standing.spent.wall_seconds),
+                    format!("{:.1}", standing.spent.cpu_seconds),
+                    tables::interval(&standing.judged.nmse),
+                ];
+                let factors = [whole.factor, whole.factor_wall, whole.factor_whole];
+                row.extend(factors.map(|f| if index == 1 { text(f) } else { String::new() }));
+                row
+            };
+            c.methods.iter().enumerate().map(row).collect()
         };
-        self.lines().into_iter().map(row).fold(head.to_owned(), |text, row| text + &row)
+        Table::new(
+            "Equal time: NMSE over pixels that see no lamp, and how many times less error photon beams \
+             have than path tracing (ratios of NMSE \u{d7} seconds; 95 % intervals)"
+                .to_owned(),
+            ["scene", "method", "wall s", "CPU s", "NMSE", "by CPU s", "by wall s", "all pixels"],
+            self.comparisons().into_iter().flat_map(rows).collect(),
+        )
+    }
+
+    /// A row for each part that beams lose; a row for each scene where they lose none.
+    fn lost(&self) -> Table {
+        let rows = |(scene, c): (String, &Comparison)| -> Vec<Vec<String>> {
+            let of_scene = |row: Vec<String>| [vec![scene.clone()], row].concat();
+            let rows: Vec<_> = losses(c).into_iter().map(tables::loss).map(of_scene).collect();
+            if rows.is_empty() {
+                let nothing = ["nothing that is resolved", "", "", ""].map(str::to_owned);
+                return vec![of_scene(nothing.to_vec())];
+            }
+            rows
+        };
+        let [place, factor, share, why] = tables::LOSS;
+        Table::new(
+            "Where photon beams lose at equal time, each with its 95 % interval, and why"
+                .to_owned(),
+            ["scene", place, factor, share, why],
+            self.comparisons().into_iter().flat_map(rows).collect(),
+        )
+    }
+
+    /// All tables as Markdown.
+    pub fn markdown(&self) -> String {
+        self.tables().iter().map(Table::markdown).collect::<Vec<_>>().join("\n")
     }
 
     /// Writes `index.html`, `table.md` and `table.json` into the folder of all scenes.
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn write(&self, out: &Path, circumstances: &Circumstances, command: &str) -> Result<()> {
-        let lines = self.lines();
-        write_json(&out.join("table.json"), &lines)?;
+    pub fn write(&self, options: &Options) -> Result<()> {
+        let out = &options.out;
+        let tables = self.tables();
+        write_json(&out.join("table.json"), &tables)?;
         write_text(&out.join("table.md"), &self.markdown())?;
         let mut page = Page::new("Transient photon beams: the evidence, made again");
         for (name, title, there) in [
@@ -121,44 +167,81 @@ impl Summary {
                 page.link(&format!("{name}/{PAGE}"), title);
             }
         }
-        let rows: Vec<Vec<String>> = lines
-            .into_iter()
-            .map(|l| vec![l.scene, l.method, l.cpu_seconds, l.error, l.factor, l.lost])
-            .collect();
-        page.heading("Equal time");
-        page.table(
-            "NMSE over pixels that see no lamp; times less error is a ratio of NMSE \u{d7} CPU s",
-            &["scene", "method", "CPU s", "NMSE", "times less error", "beams lose in"],
-            &rows,
-        );
+        page.heading("In numbers");
+        for table in &tables {
+            let heads: Vec<&str> = table.heads.iter().map(String::as_str).collect();
+            page.table(&table.caption, &heads, &table.rows);
+        }
         for (name, comparison) in self.comparisons() {
             page.note(&format!("{name}: {}", tables::won(comparison, Winner::First)));
         }
-        report::provenance(&mut page, circumstances, command, &[]);
-        page.write(&out.join(PAGE))
+        report::provenance(&mut page, &options.circumstances, &options.command, &[]);
+        page.write(&out.join(PAGE)).map(drop)
     }
 }
 
-fn factor(comparison: &Comparison) -> String {
-    let whole = comparison.whole();
-    let text = |f: Option<Factor>| f.map_or("—".to_owned(), |f| f.text());
-    format!("{} (all pixels: {})", text(whole.factor), text(whole.factor_whole))
+fn text(factor: Option<Factor>) -> String {
+    factor.map_or("—".to_owned(), |factor| factor.text())
 }
 
-/// Kinds and windows that path tracing wins, with factor, and the whole image if it wins that.
-fn lost(comparison: &Comparison) -> String {
-    let parts = comparison.kinds.iter().chain(&comparison.windows);
-    let mut lost: Vec<String> = parts
-        .filter(|part| part.factor.is_some() && part.winner() == Winner::First)
-        .map(|part| {
-            let factor = part.factor.map_or(String::new(), |factor| factor.text());
-            format!("{} ({factor}; {:.0} % of \u{3a3}r\u{b2})", part.label, 100.0 * part.share)
-        })
-        .collect();
-    let whole = comparison.whole().factor_whole;
-    if let Some(factor) = whole.filter(|factor| factor.winner() == Winner::First) {
-        // Over judged pixels nothing of this is seen.
-        lost.push(format!("all pixels, with those that see a lamp ({})", factor.text()));
+/// A row for each region.
+fn caustics(found: &Caustics) -> Table {
+    let row = |region: &mirrors::caustics::RegionResult| {
+        let pair = |pair: usize| tables::difference(&region.differences[pair]);
+        vec![
+            region.label.clone(),
+            pair(LIGHT_PATH),
+            pair(BEAMS_LIGHT),
+            region.blur.map_or("—".to_owned(), tables::percent),
+            pair(LIMIT_LIGHT),
+        ]
+    };
+    let [agree, differ, open] = found.verdicts(LIMIT_LIGHT);
+    Table::new(
+        format!(
+            "Caustics of {}: relative differences of means, 95 % intervals, and whether they lie within \
+             \u{b1}{:.0} %. Blur of beams: by halving their radii; R \u{2192} 0: beams without it. There \
+             {agree} regions agree, {differ} differ, {open} are open",
+            found.scene,
+            100.0 * MARGIN
+        ),
+        [
+            "region",
+            "light \u{2212} path",
+            "beams \u{2212} light",
+            "blur",
+            "beams, R \u{2192} 0, \u{2212} light",
+        ],
+        found.regions.iter().map(row).collect(),
+    )
+}
+
+/// A row for each method.
+fn delays(mirrors: &MirrorsResult) -> Table {
+    let row = |d: &mirrors::delay::Delay| {
+        vec![
+            d.method.clone(),
+            format!("{:.5} \u{b1} {:.5} m", d.measured, d.half),
+            format!("{:.5} m", d.exact),
+            if d.agrees() { "agrees".to_owned() } else { "DIFFERS".to_owned() },
+        ]
+    };
+    Table::new(
+        "Delay behind the glass ball of Mirrors, 99 % intervals".to_owned(),
+        ["method", "measured", "exact", "verdict"],
+        mirrors.delays.iter().map(row).collect(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_markdown_with_as_many_cells_as_heads() {
+        let rows = vec![vec!["a".into(), "b".into()]];
+        let table = Table::new("What".into(), ["x", "y"], rows);
+        assert_eq!(table.markdown(), "What:\n\n| x | y |\n| --- | --- |\n| a | b |\n");
+        assert!(Summary::default().tables().is_empty());
     }
-    if lost.is_empty() { "none resolved".to_owned() } else { lost.join("; ") }
 }

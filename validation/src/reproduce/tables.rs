@@ -1,6 +1,8 @@
 //! Numbers of a comparison as rows of tables.
 
 use super::compare::{AtTime, Comparison, Part};
+use super::losses::Loss;
+use super::mirrors::caustics::{Difference, Verdict};
 use crate::statistics::split::Estimate;
 use crate::statistics::{Factor, Winner};
 
@@ -8,6 +10,21 @@ use crate::statistics::{Factor, Winner};
 pub(crate) fn interval(estimate: &Estimate) -> String {
     let [low, high] = estimate.interval;
     format!("{:.2e} [{low:.1e}, {high:.1e}]", estimate.value)
+}
+
+/// `[-1.0 %, +2.0 %]`.
+pub(crate) fn percent([low, high]: [f64; 2]) -> String {
+    format!("[{:+.1} %, {:+.1} %]", 100.0 * low, 100.0 * high)
+}
+
+/// The interval of a difference and what it says.
+pub(crate) fn difference(difference: &Difference) -> String {
+    let word = match difference.verdict {
+        Verdict::Agree => "agree",
+        Verdict::Differ => "DIFFER",
+        Verdict::Open => "open",
+    };
+    difference.interval.map_or("—".to_owned(), |ends| format!("{} {word}", percent(ends)))
 }
 
 /// Heads of [`by_time`].
@@ -44,11 +61,10 @@ pub(crate) fn by_time(comparison: &Comparison) -> Vec<Vec<String>> {
 }
 
 fn factor_row(time: &AtTime) -> Vec<String> {
-    let text =
-        |factor: Option<Factor>| factor.map_or("—".to_owned(), |f| f.text());
+    let text = |factor: Option<Factor>| factor.map_or("—".to_owned(), |f| f.text());
     let mut row = vec![format!("{:.3} s, times less error", time.seconds)];
     row.extend((0..3).map(|_| String::new()));
-    row.push(text(time.factor));
+    row.push(format!("{}; wall: {}", text(time.factor), text(time.factor_wall)));
     row.extend([String::new(), String::new(), text(time.factor_whole)]);
     row
 }
@@ -80,6 +96,16 @@ pub(crate) fn by_part(comparison: &Comparison, parts: &[Part]) -> Vec<Vec<String
         row
     };
     parts.iter().map(row).collect()
+}
+
+/// Heads of [`loss`].
+pub(crate) const LOSS: [&str; 4] =
+    ["where beams lose", "times less error", "share of \u{3a3}r\u{b2}", "why"];
+
+/// A row for a part that beams lose.
+pub(crate) fn loss(loss: Loss) -> Vec<String> {
+    let Loss { label, factor, share, reason } = loss;
+    vec![label, factor, format!("{:.2} %", 100.0 * share), reason]
 }
 
 /// Who has less error.

@@ -12,7 +12,9 @@ use crate::statistics::ReferenceNoise;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Kind {
-    /// Light straight from the lamp, scattered once, at a surface, is at least half of it.
+    /// Light straight from the lamp, scattered once, at a surface, is at least nine tenths of it.
+    Pure,
+    /// Else: at least half of it.
     Direct,
     /// Else: the first twentieth of the pixel's energy has arrived by the end of no earlier bin.
     Early,
@@ -22,18 +24,22 @@ pub enum Kind {
 
 impl Kind {
     /// In the order of their numbers.
-    pub const ALL: [Self; 3] = [Self::Direct, Self::Early, Self::Rest];
+    pub const ALL: [Self; 4] = [Self::Pure, Self::Direct, Self::Early, Self::Rest];
 
     /// For people.
     pub fn label(self) -> &'static str {
         match self {
-            Self::Direct => "direct light on surfaces",
+            Self::Pure => "direct light on surfaces alone (90 %)",
+            Self::Direct => "direct light on surfaces and others (half)",
             Self::Early => "early fronts in fog",
             Self::Rest => "all other cells",
         }
     }
 }
 
+/// Share of direct light that makes a cell [`Kind::Pure`], and [`Kind::Direct`].
+const PURE: f32 = 0.9;
+const HALF: f32 = 0.5;
 /// Part of a pixel's energy by which its front has passed.
 const FRONT: f64 = 0.05;
 
@@ -140,7 +146,7 @@ impl Truth {
     }
 
     /// Sorts cells into kinds: `direct` is what light that was scattered once, at a surface, adds to
-    /// each, (pixel, bin).
+    /// each, (pixel, bin). Shares are those of 3x3 pixels together, so that noise sorts less.
     ///
     /// # Errors
     /// If it has another shape.
@@ -149,18 +155,24 @@ impl Truth {
             return Err(ValidationError::unusable("direct light", "has another shape"));
         }
         let mut kinds = Vec::with_capacity(direct.len());
-        for (cells, direct) in
-            self.values.chunks_exact(self.bins).zip(direct.chunks_exact(self.bins))
-        {
+        let (mut around, mut direct_around) = (vec![0.0; self.bins], vec![0.0; self.bins]);
+        for (pixel, cells) in self.values.chunks_exact(self.bins).enumerate() {
+            self.pool(&self.values, pixel, &mut around);
+            self.pool(direct, pixel, &mut direct_around);
             let energy: f64 = cells.iter().map(|&v| f64::from(v)).sum();
             let mut arrived = 0.0;
-            for (&cell, &direct) in cells.iter().zip(direct) {
+            for (bin, &cell) in cells.iter().enumerate() {
                 let front = arrived < FRONT * energy;
                 arrived += f64::from(cell);
-                kinds.push(match (direct > 0.0 && direct >= 0.5 * cell, front) {
-                    (true, _) => Kind::Direct,
-                    (false, true) => Kind::Early,
-                    (false, false) => Kind::Rest,
+                let (direct, all) = (direct_around[bin], around[bin]);
+                kinds.push(if direct > 0.0 && direct >= PURE * all {
+                    Kind::Pure
+                } else if direct > 0.0 && direct >= HALF * all {
+                    Kind::Direct
+                } else if front {
+                    Kind::Early
+                } else {
+                    Kind::Rest
                 });
             }
         }
@@ -168,21 +180,46 @@ impl Truth {
         Ok(())
     }
 
+    /// Sums over the pixels around a pixel, and itself, of every bin.
+    fn pool(&self, cells: &[f32], pixel: usize, sums: &mut [f32]) {
+        sums.fill(0.0);
+        let (x, y) = (pixel % self.width, pixel / self.width);
+        let near = |at: usize, end: usize| at.saturating_sub(1)..(at + 2).min(end);
+        for place in near(y, self.height)
+            .flat_map(|y| near(x, self.width).map(move |x| (x, y)))
+            .map(|(x, y)| y * self.width + x)
+        {
+            let cells = &cells[place * self.bins..(place + 1) * self.bins];
+            sums.iter_mut().zip(cells).for_each(|(sum, cell)| *sum += cell);
+        }
+    }
+
     /// The reference's noise over the bins of a range, of judged pixels or of all.
     pub fn noise(&self, bins: Range<usize>, judged: bool) -> ReferenceNoise {
-        self.noise_of(judged, |_, bin| bins.contains(&bin))
+        self.noise_of(bins, |pixel| !judged || self.judged[pixel], |_, _| true)
     }
 
-    /// The same over the cells of a kind.
-    pub fn noise_of_kind(&self, kind: Kind) -> ReferenceNoise {
-        self.noise_of(true, |pixel, bin| self.kinds(pixel).get(bin) == Some(&kind))
+    /// The same of pixels that are not judged.
+    pub fn noise_of_others(&self) -> ReferenceNoise {
+        self.noise_of(0..self.bins, |pixel| !self.judged[pixel], |_, _| true)
     }
 
-    fn noise_of(&self, judged: bool, include: impl Fn(usize, usize) -> bool) -> ReferenceNoise {
+    /// The same over the cells of a kind, of judged pixels.
+    pub fn noise_of_kind(&self, kind: Kind, bins: Range<usize>) -> ReferenceNoise {
+        let is_of = |pixel: usize, bin: usize| self.kinds(pixel).get(bin) == Some(&kind);
+        self.noise_of(bins, |pixel| self.judged[pixel], is_of)
+    }
+
+    fn noise_of(
+        &self,
+        bins: Range<usize>,
+        pixels: impl Fn(usize) -> bool,
+        include: impl Fn(usize, usize) -> bool,
+    ) -> ReferenceNoise {
         let mut noise = ReferenceNoise::default();
-        for pixel in (0..self.pixels()).filter(|&pixel| !judged || self.judged[pixel]) {
+        for pixel in (0..self.pixels()).filter(|&pixel| pixels(pixel)) {
             let mut variance = 0.0;
-            for (bin, &value) in self.pixel(pixel).iter().enumerate() {
+            for (bin, &value) in bins.clone().zip(&self.pixel(pixel)[bins.clone()]) {
                 if include(pixel, bin) {
                     noise.power += f64::from(value) * f64::from(value);
                     variance += self.variance(pixel, bin);
@@ -240,12 +277,16 @@ mod tests {
 
     #[test]
     fn cells_are_sorted_by_direct_light_and_by_the_front() {
-        use Kind::{Direct, Early, Rest};
+        use Kind::{Direct, Early, Pure, Rest};
         // Energy 10; the first 0.5 of it has arrived within the second bin.
         let mut truth = Truth::of_cells((1, 1, 5), vec![0.4, 0.6, 4.0, 4.0, 1.0], 0.0);
-        truth.sort_cells(&[0.0, 0.0, 3.0, 1.9, 0.5]).unwrap();
-        assert_eq!(truth.kinds(0), [Early, Early, Direct, Rest, Direct]);
+        truth.sort_cells(&[0.0, 0.0, 3.0, 1.9, 0.95]).unwrap();
+        assert_eq!(truth.kinds(0), [Early, Early, Direct, Rest, Pure]);
         assert!(truth.sort_cells(&[0.0]).is_err());
+        // A noisy cell among quiet neighbours is of their kind: 1 of 1 + 2·0.7.
+        let mut row = Truth::of_cells((3, 1, 1), vec![0.7, 1.0, 0.7], 0.0);
+        row.sort_cells(&[0.65, 0.65, 0.65]).unwrap();
+        assert_eq!([0, 1, 2].map(|pixel| row.kinds(pixel)[0]), [Direct; 3]);
     }
 
     #[test]
@@ -259,7 +300,9 @@ mod tests {
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * b, "{a} {b}");
         close(frames.iter().map(|n| n.power).sum(), whole.power);
         close(frames.iter().map(|n| n.variance).sum(), whole.variance);
-        close(Kind::ALL.iter().map(|&kind| truth.noise_of_kind(kind).power).sum(), whole.power);
+        let of_kind = |&kind: &Kind| truth.noise_of_kind(kind, 0..6).power;
+        close(Kind::ALL.iter().map(of_kind).sum(), whole.power);
+        close(truth.noise_of_others().power + whole.power, truth.noise(0..6, false).power);
         assert_eq!((whole.variance, whole.squares, whole.largest), (9.0, 27.0, 3.0));
     }
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use tpb_film::Arrays;
 use tpb_optics::opl::seconds_from_opl;
-use tpb_viewer::{Method, PixelErrors, write_comparison};
+use tpb_viewer::{Method, PixelErrors};
 
 use super::super::colour::{diverging, frame_luminances, luminance, sequential, white};
 use super::super::compare::Comparison;
@@ -13,7 +13,7 @@ use super::super::page::Page;
 use super::super::picture::Picture;
 use super::super::{bin_of, report};
 use super::{CornellResult, Shown};
-use crate::error::{Result, ValidationError};
+use crate::error::Result;
 use crate::statistics::Factor;
 
 /// Between pictures of a grid.
@@ -38,9 +38,9 @@ pub(super) fn write(out: &Path, result: &CornellResult, shown: &Shown<'_>) -> Re
     let arrays = shown.arrays()?;
     sequence(&mut page, out, &arrays)?;
     steady(&mut page, out, &arrays)?;
-    viewer(out, result, shown, &arrays)?;
+    let about = viewer(out, result, shown, &arrays)?;
     drop(arrays);
-    page.link("viewer.html", "All frames, pixel by pixel: the comparison viewer");
+    page.link_with("viewer.html", "All frames, pixel by pixel: the comparison viewer", &about);
     report::numbers(&mut page, comparison);
     report::curves(&mut page, out, "Cornell blocks", comparison, "")?;
     maps(&mut page, out, shown)?;
@@ -59,14 +59,12 @@ pub(super) fn write(out: &Path, result: &CornellResult, shown: &Shown<'_>) -> Re
         &result.command,
         &report::film(comparison),
     );
-    page.write(&out.join("index.html"))
+    page.write(&out.join("index.html")).map(drop)
 }
 
 fn introduction(page: &mut Page, comparison: &Comparison) {
     let whole = comparison.whole();
-    let factor = |f: Option<Factor>| {
-        f.map_or("an unresolved number of".to_owned(), |f| f.text())
-    };
+    let factor = |f: Option<Factor>| f.map_or("an unresolved number of".to_owned(), |f| f.text());
     page.text(&format!(
         "Each method rendered {} times for {} s. Over the {} of {} pixels that see no lamp, photon \
          beams have {} times less error (NMSE \u{d7} CPU s, 95 % interval) than path tracing; over \
@@ -120,7 +118,8 @@ fn sequence(page: &mut Page, out: &Path, arrays: &[Arrays; 3]) -> Result<()> {
          99th percentile of the reference's lit cells in these frames.",
         &columns,
         &rows,
-    )
+    );
+    Ok(())
 }
 
 fn steady(page: &mut Page, out: &Path, arrays: &[Arrays; 3]) -> Result<()> {
@@ -144,7 +143,8 @@ fn steady(page: &mut Page, out: &Path, arrays: &[Arrays; 3]) -> Result<()> {
         "All time added up, from the same renders; the same exposure.",
         &columns,
         &[("steady".to_owned(), row.collect())],
-    )
+    );
+    Ok(())
 }
 
 fn viewer(
@@ -152,7 +152,7 @@ fn viewer(
     result: &CornellResult,
     shown: &Shown<'_>,
     [path, beams, reference]: &[Arrays; 3],
-) -> Result<()> {
+) -> Result<String> {
     let comparison = &result.picture;
     let method = |key: &str, index: usize, label: &str, arrays| {
         let mut method = Method::new(key, label, arrays);
@@ -181,9 +181,7 @@ fn viewer(
         "Intervals of path and beams are those of one replicate, from the spread of {} of them.",
         comparison.replicates
     )];
-    write_comparison(&out.join("viewer.html"), &page)
-        .map_err(|error| ValidationError::unusable("viewer page", error))?;
-    Ok(())
+    report::viewer(&out.join("viewer.html"), &page)
 }
 
 fn maps(page: &mut Page, out: &Path, shown: &Shown<'_>) -> Result<()> {
@@ -200,7 +198,7 @@ fn maps(page: &mut Page, out: &Path, shown: &Shown<'_>) -> Result<()> {
         "Variance of a pixel, summed over its bins, over the mean signal of a judged pixel.",
         &columns,
         &[("variance".to_owned(), row)],
-    )?;
+    );
     page.scale(
         &scale_bar(sequential),
         &format!("{:.0e}", variances.darkest),
@@ -235,7 +233,7 @@ fn maps(page: &mut Page, out: &Path, shown: &Shown<'_>) -> Result<()> {
          claimed.",
         &columns,
         &[("bias".to_owned(), row)],
-    )?;
+    );
     let ends = format!("{:.1} %", 100.0 * scale);
     page.scale(
         &scale_bar(|at| diverging(2.0 * at - 1.0)),

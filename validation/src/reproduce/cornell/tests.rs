@@ -34,7 +34,8 @@ fn all_files_are_made_and_agree_with_each_other() {
     let options = trial("cornell");
     let _ = fs::remove_dir_all(&options.out);
     let mut told = Vec::new();
-    let result = run(&options, &mut Watch::new(&mut |line: &str| told.push(line.to_owned()))).unwrap();
+    let result =
+        run(&options, &mut Watch::new(&mut |line: &str| told.push(line.to_owned()))).unwrap();
     let out = options.out.join(NAME);
     for file in ["sequence.png", "steady.png", "viewer.html", "variance-beams.png", "bias-path.png"]
     {
@@ -67,8 +68,8 @@ fn all_files_are_made_and_agree_with_each_other() {
         serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
     assert_eq!(kept, result);
     let summary = Summary::read(&options.out);
-    summary.write(&options.out, &options.circumstances, &options.command).unwrap();
-    assert_eq!(summary.lines().len(), 2);
+    summary.write(&options).unwrap();
+    assert_eq!(summary.tables()[0].rows.len(), 2);
     assert!(fs::read_to_string(options.out.join("table.md")).unwrap().contains("12x12x20"));
 
     // A second run uses the reference that is there.
@@ -98,7 +99,8 @@ fn an_interrupted_race_goes_on_and_a_folder_that_cannot_be_written_is_told_first
     };
     let first = race(2, 5).run(&mut Watch::default()).unwrap();
     let mut told = Vec::new();
-    let more = race(3, 5).run(&mut Watch::new(&mut |line: &str| told.push(line.to_owned()))).unwrap();
+    let more =
+        race(3, 5).run(&mut Watch::new(&mut |line: &str| told.push(line.to_owned()))).unwrap();
     assert_eq!(more[0][..2], first[0][..]);
     let kept = told.iter().filter(|line| line.contains("kept from an earlier run")).count();
     assert_eq!((kept, told.len()), (2, 3));

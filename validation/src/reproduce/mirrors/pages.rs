@@ -4,13 +4,13 @@ use std::path::Path;
 
 use tpb_film::{Arrays, Pulse};
 use tpb_optics::opl::seconds_from_opl;
-use tpb_viewer::{Method, PixelErrors, write_comparison};
+use tpb_viewer::{Method, PixelErrors};
 
 use super::super::colour::{frame_luminances, white};
 use super::super::page::Page;
 use super::super::picture::Picture;
-use super::super::{Options, report};
-use super::caustics::{Caustics, MARGIN, Verdict};
+use super::super::{Options, report, tables};
+use super::caustics::{BEAMS_LIGHT, Caustics, LIMIT_LIGHT, MARGIN};
 use super::room::Event;
 use super::{MirrorsResult, TWIN};
 use crate::error::{Result, ValidationError};
@@ -18,8 +18,15 @@ use crate::error::{Result, ValidationError};
 /// Between pictures of a grid.
 const GAP: usize = 4;
 const PAPER: [u8; 3] = [255; 3];
+
 /// Writes both sequences, the viewer's page, and `index.html`; the delta sequence is used up.
-pub(super) fn write(out: &Path, result: &MirrorsResult, mut arrays: Arrays) -> Result<()> {
+/// `about_caustics` is what [`caustics_viewer`] says of its page.
+pub(super) fn write(
+    out: &Path,
+    result: &MirrorsResult,
+    mut arrays: Arrays,
+    about_caustics: &str,
+) -> Result<()> {
     let mut page = Page::new("Mirrors: wavefronts reflected, and refracted late");
     page.text(&format!(
         "A fog-filled room with a point lamp, a mirror for its left wall, a tilted mirror on the \
@@ -29,18 +36,19 @@ pub(super) fn write(out: &Path, result: &MirrorsResult, mut arrays: Arrays) -> R
     ));
     let events = shown(&result.events, arrays.bins);
     let delta = frames(&arrays, &events);
-    viewer(out, result, &arrays)?;
+    let about = viewer(out, result, &arrays)?;
     let pulse = arrays.apply_pulse(Pulse::Continuous);
     pulse.map_err(|error| ValidationError::unusable("continuous emission", error))?;
     let continuous = frames(&arrays, &events);
     let edges = arrays.opl_edges.clone();
     drop(arrays);
     sequences(&mut page, out, &edges, &events, delta, continuous)?;
-    page.link("viewer.html", "All frames, pixel by pixel: the viewer");
+    page.link_with("viewer.html", "All frames, pixel by pixel: the viewer", &about);
     timeline(&mut page, &result.events, &edges);
     delays(&mut page, result);
     caustics(&mut page, &result.twin, &result.point);
-    page.link("caustics.html", "The twin's renders by all three methods, in the comparison viewer");
+    let text = "The twin's renders by all three methods, in the comparison viewer";
+    page.link_with("caustics.html", text, about_caustics);
     page.heading("Path tracing and photon beams at equal time, on the twin");
     page.text(
         "The caustics of a tiny lamp, seen and unseen, are what path tracing finds only by chance. \
@@ -50,7 +58,7 @@ pub(super) fn write(out: &Path, result: &MirrorsResult, mut arrays: Arrays) -> R
     report::curves(&mut page, out, "Mirrors, area lamp", &result.equal_time, "")?;
     let film = report::film(&result.equal_time);
     report::provenance(&mut page, &result.circumstances, &result.command, &film);
-    page.write(&out.join("index.html"))
+    page.write(&out.join("index.html")).map(drop)
 }
 
 /// Events in frames of their own: of those that share one, the first.
@@ -104,7 +112,7 @@ fn sequences(
          cells.",
         &columns,
         &[row("delta pulse", delta), row("continuous emission", continuous)],
-    )?;
+    );
     let seen = |(bin, label): &(usize, String)| format!("Bin {bin}: {label}.");
     page.list(&events.iter().map(seen).collect::<Vec<_>>());
     Ok(())
@@ -182,6 +190,19 @@ fn caustics(page: &mut Page, twin: &Caustics, point: &Caustics) {
          low, more often than not.",
         100.0 * MARGIN
     ));
+    let count = |pair: usize| {
+        let [agree, differ, open] = twin.verdicts(pair);
+        format!("{agree} agree, {differ} differ, {open} are open")
+    };
+    page.text(&format!(
+        "Photons on surfaces are blurred over a disc, beams over their radius: a region whose borders \
+         cut through a caustic loses what is blurred out of it, and where borders of shadows lie in it, \
+         gains. Of the twin's regions, beams against light: {}. Rendered once more with half the radii, \
+         beams tell their own blur, 4/3 (B(R) \u{2212} B(R/2)), and their mean without it, R \u{2192} 0 \
+         (Richardson): {}.",
+        count(BEAMS_LIGHT),
+        count(LIMIT_LIGHT)
+    ));
     for (caption, found) in [
         ("The twin with an area lamp", twin),
         ("The point lamp: path tracing misses its caustics, and is expected to differ", point),
@@ -205,7 +226,9 @@ fn caption_of(caption: &str, found: &Caustics) -> String {
 fn heads(found: &Caustics) -> Vec<&str> {
     let mut heads = vec!["region", "pixels", "bins"];
     heads.extend(found.methods.iter().map(String::as_str));
-    heads.extend(["light \u{2212} path", "beams \u{2212} path", "beams \u{2212} light"]);
+    heads.push("blur of beams");
+    let differences = found.regions.first().map(|region| &region.differences);
+    heads.extend(differences.into_iter().flatten().map(|difference| difference.of.as_str()));
     heads
 }
 
@@ -218,42 +241,33 @@ fn row(region: &super::caustics::RegionResult) -> Vec<String> {
     let level =
         |l: &super::caustics::Level| format!("{:.3e} \u{b1} {:.1e}", l.mean, l.standard_error);
     row.extend(region.levels.iter().map(level));
-    row.extend(region.differences.iter().map(|d| {
-        let word = match d.verdict {
-            Verdict::Agree => "agree",
-            Verdict::Differ => "DIFFER",
-            Verdict::Open => "open",
-        };
-        d.interval.map_or("—".to_owned(), |[low, high]| {
-            format!("[{:+.1} %, {:+.1} %] {word}", 100.0 * low, 100.0 * high)
-        })
-    }));
+    row.push(region.blur.map_or("—".to_owned(), tables::percent));
+    row.extend(region.differences.iter().map(tables::difference));
     row
 }
 
-fn viewer(out: &Path, result: &MirrorsResult, arrays: &Arrays) -> Result<()> {
+fn viewer(out: &Path, result: &MirrorsResult, arrays: &Arrays) -> Result<String> {
     let mut method = Method::new("beams", "photon beams", arrays);
     method.provenance = report::provenance_of(&result.circumstances);
     method.command = Some(result.command.clone());
     let mut page = tpb_viewer::Comparison::new("Mirrors", vec![method]);
     page.caption = "A pulse in a fog-filled room with mirrors and a glass ball.".into();
     page.notes = result.events.iter().map(|e| format!("Bin {}: {}.", e.bin, e.label)).collect();
-    let written = write_comparison(&out.join("viewer.html"), &page);
-    written.map_err(|error| ValidationError::unusable("viewer page", error))?;
-    Ok(())
+    report::viewer(&out.join("viewer.html"), &page)
 }
 
-/// The page that shows the twin by all methods.
+/// The page that shows the twin by all methods; what is to be said of it.
 pub(super) fn caustics_viewer(
     out: &Path,
     options: &Options,
     found: &Caustics,
     means: &[Arrays],
-) -> Result<()> {
+) -> Result<String> {
     let methods = found.methods.iter().zip(&found.cpu_seconds).zip(means);
     let methods = methods
         .map(|((name, seconds), arrays)| {
-            let mut method = Method::new(name, format!("{name}, {seconds:.0} CPU s"), arrays);
+            let key = name.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+            let mut method = Method::new(key, format!("{name}, {seconds:.0} CPU s"), arrays);
             if name == "path" {
                 method.pixel_errors = PixelErrors::Independent;
             }
@@ -265,7 +279,5 @@ pub(super) fn caustics_viewer(
     let mut page = tpb_viewer::Comparison::new("Mirrors, with a tiny area lamp", methods);
     page.caption = format!("{TWIN}: path tracing, light tracing, photon beams; no reference.");
     page.notes = vec!["The light tracer does not see what stands in mirrors and glass.".into()];
-    let written = write_comparison(&out.join("caustics.html"), &page);
-    written.map_err(|error| ValidationError::unusable("viewer page", error))?;
-    Ok(())
+    report::viewer(&out.join("caustics.html"), &page)
 }

@@ -44,7 +44,9 @@ fn all_files_are_made() {
     }
     assert!(result.events.windows(2).all(|pair| pair[0].opl <= pair[1].opl));
     assert!(result.events.len() >= 9, "{:?}", result.events);
-    assert_eq!(result.twin.methods, ["path", "light", "beams"]);
+    assert_eq!(result.twin.methods[..3], ["path", "light", "beams"]);
+    assert!(result.twin.regions.iter().all(|region| region.differences.len() == 5));
+    assert!(!out.join("caustics").exists(), "renders are removed at the end");
     assert!(
         result.twin.regions.iter().all(|region| region.levels[1].mean > 0.0 || region.pixels < 4)
     );
