@@ -52,7 +52,8 @@ const PICTURE: u64 = 400_000;
 
 /// Names of pictures that stand for a page: beside `index.html`, or in the folder that is named like
 /// the page.
-const PICTURES: [&str; 4] = ["thumbnail.png", "thumbnail.svg", "sequence.png", "steady.png"];
+const PICTURES: [&str; 5] =
+    ["thumbnail.png", "thumbnail.svg", "small.png", "sequence.png", "steady.png"];
 
 /// Looks for the pages of a shelf, and copies them.
 pub(crate) fn fill(shelf: &Shelf, copies: &mut Copies) -> Result<Filled, DashboardError> {

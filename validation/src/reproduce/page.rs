@@ -38,9 +38,10 @@ th, td { padding: .2rem .6rem; text-align: right; border-bottom: 1px solid var(-
 th:first-child, td:first-child { text-align: left; }
 td.words { white-space: normal; text-align: left; min-width: 18rem; }
 table.pictures th, table.pictures td { border: 0; padding: 2px; text-align: center; font-size: .85rem;
-  font-weight: 500; }
+  font-weight: 500; white-space: normal; }
 table.pictures th[scope=row] { writing-mode: vertical-rl; transform: rotate(180deg); color: var(--muted); }
-table.pictures img { display: block; width: clamp(7rem, 16vw, 16rem); image-rendering: pixelated;
+table.pictures tbody td { width: 16rem; }
+table.pictures img { display: block; width: 100%; min-width: 7rem; max-width: 16rem; image-rendering: pixelated;
   background: var(--stage); }
 .chart { background: #fff; border-radius: 4px; display: block; width: 100%; min-width: 34rem; height: auto; }
 .scale { width: 16rem; height: 12px; image-rendering: pixelated; vertical-align: middle; }

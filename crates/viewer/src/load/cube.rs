@@ -26,6 +26,7 @@ pub(super) fn of_npz(path: &Path, names: &[String]) -> Result<Loaded, ViewerErro
         _ => Quantity::BinEnergy,
     };
     let cells = npy::of_member(path, name)?;
+    let shape = cells.shape.clone();
     let mut arrays = arrays(path, &format!("`{name}`"), cells, quantity)?;
     let edges = edges(path, names, arrays.bins)?;
     let timed = edges.is_some();
@@ -34,10 +35,10 @@ pub(super) fn of_npz(path: &Path, names: &[String]) -> Result<Loaded, ViewerErro
     }
     if names.iter().any(|name| name == "variance") {
         let variance = npy::of_member(path, "variance")?;
-        let values = variance.into_f32();
-        if values.len() != arrays.transient.len() {
+        if variance.shape != shape {
             return Err(ViewerError::cube(path, "`variance` has not the shape of the cube"));
         }
+        let values = variance.into_f32();
         if values.iter().any(|&v| v.is_nan() || v < 0.0) {
             return Err(ViewerError::cube(path, "`variance` has values that are no variances"));
         }

@@ -259,6 +259,9 @@ fn archives_of_ours_and_of_others() {
     assert!(error(&path).contains("5 edges"));
     archive(&path, &[("transient", &[1, 1, 4], &cells), ("variance", &[1, 1, 2], &cells[..2])]);
     assert!(error(&path).contains("variance"));
+    // As many cells, in other places.
+    archive(&path, &[("transient", &[1, 2, 2], &cells), ("variance", &[2, 1, 2], &cells)]);
+    assert!(error(&path).contains("not the shape"));
 }
 
 #[test]
