@@ -21,6 +21,7 @@ use crate::workspace::{Outcome, complain, root, say};
 Examples:
   cargo xtask gallery                      all scenes, a minute each
   cargo xtask gallery window --time 300    one of them for five minutes
+  cargo xtask gallery mirrors-area --method path
   cargo xtask gallery --agreement          do the methods agree on these scenes? (renders nothing else)
 
 Writes index.html, and for each scene a result folder and the viewer's page. Scenes that are not
@@ -28,6 +29,9 @@ named stay on the page as they were rendered last.")]
 pub(crate) struct GalleryArgs {
     /// Names of scenes [default: all of scenes/]
     names: Vec<String>,
+    /// Rendering method; photon beams render all light of these scenes
+    #[arg(long, default_value = "beams", value_parser = ["beams", "path", "light"])]
+    method: String,
     /// Wall time of each render in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0)]
     time: f64,
@@ -41,7 +45,7 @@ pub(crate) struct GalleryArgs {
     #[arg(long)]
     page_only: bool,
     /// Compares the methods, 32 batches each, instead
-    #[arg(long, conflicts_with_all = ["page_only", "width", "budget", "time"])]
+    #[arg(long, conflicts_with_all = ["page_only", "width", "budget", "time", "method"])]
     agreement: bool,
     /// Passes of a batch of that comparison
     #[arg(long, value_name = "N", default_value_t = 1, requires = "agreement")]
@@ -103,7 +107,7 @@ impl Program {
     /// A result folder and the viewer's page; whether the result is sound.
     fn render(&self, scene: &GalleryScene, args: &GalleryArgs, out: &Path) -> Outcome {
         let Self { sh, path } = self;
-        let (name, folder) = (&scene.name, out.join(&scene.name));
+        let (name, method, folder) = (&scene.name, &args.method, out.join(&scene.name));
         let (file, time) = (format!("scenes/{name}.json"), format!("{}ms", args.time * 1e3));
         let mut changes = Vec::new();
         if let Some(width) = args.width {
@@ -113,7 +117,10 @@ impl Program {
                 format!("sensor.film.height={}", rows(scene, width)?),
             ]);
         }
-        let render = cmd!(sh, "{path} render {file} --time {time} {changes...} -o {folder}");
+        let render = cmd!(
+            sh,
+            "{path} render {file} --method {method} --time {time} {changes...} -o {folder}"
+        );
         let output = render.quiet().ignore_status().output()?;
         let code = output.status.code();
         if !matches!(code, Some(0 | 1)) {

@@ -45,7 +45,7 @@ enum Task {
     ErrorTime(error_time::ErrorTimeArgs),
     /// Renders the scenes of `scenes/` onto one page, or compares the methods on them.
     Gallery(gallery::GalleryArgs),
-    /// Writes the meshes of the gallery's scenes.
+    /// Writes the meshes and images of the gallery's scenes.
     Meshes,
     /// Writes experiments, errors against run time and benchmarks as a page: target/dashboard.
     Dashboard(dashboard::DashboardArgs),

@@ -51,8 +51,15 @@ const fn at(at: f64, seen: &'static str) -> Moment {
 /// Moments of a scene that nobody has described.
 const ANY: [Moment; 3] = [at(0.3, ""), at(0.5, ""), at(0.7, "")];
 
+/// Moments of *Mirrors* and of its twin.
+const MIRRORS: [Moment; 3] = [
+    at(0.307, "the front comes off the tilted mirror; light through the ball leaves it, late"),
+    at(0.370, "light through the ball is near its focus; the front meets the back wall"),
+    at(0.426, "the caustic lights the floor; on the back wall the front and its mirror image"),
+];
+
 /// What is known, in the order of the page.
-pub const ENTRIES: [Entry; 9] = [
+pub const ENTRIES: [Entry; 12] = [
     Entry {
         name: "torus-knot",
         title: "Glass knot",
@@ -101,6 +108,42 @@ pub const ENTRIES: [Entry; 9] = [
         ],
     },
     Entry {
+        name: "chapel",
+        title: "A rose window",
+        text: "Parallel sunlight through a rose window of coloured panes, thin slabs of glass, into \
+               dusty air: its front is a plane that carries the window through the room, onto a \
+               compass rose of marble, which is an image.",
+        moments: [
+            at(0.295, "the front carries the window into the room; the panes mirror it"),
+            at(0.460, "the front meets the floor, along a line"),
+            at(0.585, "half of the window has landed; light from the marble fills the room"),
+        ],
+    },
+    Entry {
+        name: "frosted",
+        title: "Frosted glass and copper",
+        text: "The upper half of a spot light's beam passes over a block of frosted glass, the lower \
+               half through it; a slab of rough copper throws both up to the ceiling. Rough surfaces \
+               are no limit of any method: all three agree on every pixel.",
+        moments: [
+            at(0.300, "half of the front passes above the block; the other half is in the glass"),
+            at(0.380, "above the front is sharp, behind the glass it is late and spread"),
+            at(0.600, "the copper throws a broad lobe, in its own colour, through the fog"),
+        ],
+    },
+    Entry {
+        name: "neon",
+        title: "Neon",
+        text: "Three lamps that have an area, a knot, a tube and a disc, flash at once in fog above a \
+               floor of rough steel. All methods render all of it, the lamps' reflections in the \
+               floor included.",
+        moments: [
+            at(0.195, "a shell of lit fog around each lamp; the nearest is seen first"),
+            at(0.260, "the shells pass through each other; the steel reflects them, blurred"),
+            at(0.585, "the fronts are on the back wall, as rings"),
+        ],
+    },
+    Entry {
         name: "surfaces-only",
         title: "Only surfaces",
         text: "A flash lights a spot of the left wall; all else is its indirect light. There is no \
@@ -129,19 +172,23 @@ pub const ENTRIES: [Entry; 9] = [
         name: "cornell-blocks",
         title: "Cornell blocks",
         text: "Two blocks in a room of fog, the scene of the paper's figure 2.",
-        moments: ANY,
+        moments: [
+            at(0.335, "a dome of lit fog has reached the red wall and the green one"),
+            at(0.370, "bands of direct light on both blocks, arcs along the walls"),
+            at(0.450, "the front is on the back wall, with the shadow of the tall block"),
+        ],
     },
     Entry {
         name: "mirrors",
         title: "Mirrors",
         text: "Fog, plane mirrors and a ball of glass, the scene of the paper's figure 3.",
-        moments: ANY,
+        moments: MIRRORS,
     },
     Entry {
         name: "mirrors-area",
         title: "Mirrors, with a lamp that has an area",
         text: "The same with a tiny lamp instead of a point, so that a path from the eye can meet it.",
-        moments: ANY,
+        moments: MIRRORS,
     },
 ];
 

@@ -1,7 +1,7 @@
 //! The gallery: scenes that show what the renderer can do, rendered and put on one page.
 //!
 //! * [`catalogue`]: the scenes under `scenes/`, what they are called and what is seen in them.
-//! * [`meshes`]: the meshes that they use, made from formulas.
+//! * [`meshes`]: the meshes that they use, made from formulas; [`compass`]: an image, likewise.
 //! * [`card`]: what is known of one rendered scene; [`page`]: all of them as one HTML page.
 //! * [`agreement`]: do the methods agree on what they both render?
 //!
@@ -10,6 +10,7 @@
 pub mod agreement;
 pub mod card;
 pub mod catalogue;
+pub mod compass;
 pub mod meshes;
 pub mod page;
 #[cfg(test)]

@@ -1,7 +1,9 @@
 //! Every scene of the gallery: loads, plans, and is rendered by every method that takes it.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
 use tpb_beams::BeamOptions;
 use tpb_light::LightOptions;
 use tpb_path::PathOptions;
@@ -50,10 +52,56 @@ fn estimators() -> [Estimator; 3] {
 #[test]
 fn known_scenes_are_there() {
     let found = scenes();
-    for name in ["torus-knot", "laser-smoke", "liquid", "window", "surfaces-only", "fog-only"] {
-        assert!(found.iter().any(|scene| scene.name == name), "{name}");
-        assert!(ENTRIES.iter().any(|entry| entry.name == name), "{name} has no entry");
+    for entry in &ENTRIES {
+        assert!(found.iter().any(|scene| scene.name == entry.name), "{} has no scene", entry.name);
     }
+    for scene in &found {
+        let described = !scene.text.is_empty() && scene.moments.iter().all(|m| !m.seen.is_empty());
+        assert!(described, "{} has no entry, or one that says nothing", scene.name);
+    }
+}
+
+/// All `type`s of a description.
+fn types(value: &Value, found: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(members) => {
+            found.extend(members.get("type").and_then(Value::as_str).map(str::to_owned));
+            members.values().for_each(|member| types(member, found));
+        }
+        Value::Array(items) => items.iter().for_each(|item| types(item, found)),
+        _ => {}
+    }
+}
+
+/// What light does in scenes, and what these may say of it, is seen in some scene of the gallery.
+#[test]
+fn the_gallery_shows_what_scenes_can_have() {
+    let mut found = BTreeSet::new();
+    for scene in scenes() {
+        types(&small(&scene).canonical, &mut found);
+    }
+    let shown = [
+        &["diffuse", "conductor", "roughconductor", "dielectric", "roughdielectric"][..],
+        &["thindielectric", "null", "twosided", "checkerboard", "bitmap", "homogeneous", "hg"],
+        &["isotropic", "point", "spot", "area", "directional", "laser", "rectangle", "cube"],
+        &["sphere", "disk", "cylinder", "ply"],
+    ]
+    .concat();
+    let missing: Vec<_> = shown.iter().filter(|&&name| !found.contains(name)).collect();
+    assert!(missing.is_empty(), "no scene has {missing:?}");
+    let lamps: BTreeSet<String> =
+        scenes().iter().flat_map(|s| lamps(&small(s).canonical)).collect();
+    assert_eq!(
+        lamps.into_iter().collect::<Vec<_>>(),
+        ["cylinder", "disk", "ply", "rectangle", "sphere"]
+    );
+}
+
+/// The shapes that shine.
+fn lamps(scene: &Value) -> Vec<String> {
+    let members = scene.as_object().into_iter().flat_map(|members| members.values());
+    let lamps = members.filter(|member| member.get("emitter").is_some());
+    lamps.filter_map(|lamp| lamp["type"].as_str().map(str::to_owned)).collect()
 }
 
 #[test]
@@ -142,4 +190,23 @@ fn photon_beams_render_all_light_of_every_scene() {
         let plan = Plan::new(&loaded.scene, &loaded.scene.integrator).of_method(MethodName::Beams);
         assert!(plan.left_out.iter().all(|item| !item.loses_light), "{}: {plan}", scene.name);
     }
+}
+
+#[test]
+fn rough_surfaces_are_no_limit_of_any_method() {
+    for (name, rough) in [("frosted", &["block", "slab"][..]), ("neon", &["floor"])] {
+        let loaded = named(name);
+        let plan = Plan::new(&loaded.scene, &loaded.scene.integrator);
+        assert_eq!(plan.rough, rough);
+        assert!(plan.left_out.iter().all(|item| !item.loses_light), "{name}: {plan}");
+    }
+}
+
+/// Neither path tracing nor light tracing renders all light of the chapel, and they say so.
+#[test]
+fn sunlight_through_panes_is_for_beams() {
+    let loaded = named("chapel");
+    let plan = Plan::new(&loaded.scene, &loaded.scene.integrator);
+    assert!(reason(&plan, "caustics of points and spots").contains("sun"));
+    assert!(reason(&plan, "light in mirrors and glass").contains("panes_ruby"));
 }

@@ -5,6 +5,7 @@
 //! coordinates; more than 65536 vertices, whose indices would not fit.
 
 mod ply;
+mod rose;
 mod torus_knot;
 mod tumbler;
 
@@ -45,7 +46,13 @@ const fn file(name: &'static str, make: fn() -> Mesh) -> MeshFile {
 }
 
 /// All meshes.
-pub const MESHES: [MeshFile; 4] = [
+pub const MESHES: [MeshFile; 10] = [
+    file("rose-bars.ply", rose::bars),
+    file("rose-inner-even.ply", rose::inner_even),
+    file("rose-inner-odd.ply", rose::inner_odd),
+    file("rose-outer-even.ply", rose::outer_even),
+    file("rose-outer-odd.ply", rose::outer_odd),
+    file("rose-wall.ply", rose::wall),
     file("torus-knot.ply", torus_knot),
     file("tumbler-air-glass.ply", air_glass),
     file("tumbler-glass-liquid.ply", glass_liquid),
@@ -146,6 +153,32 @@ mod tests {
         assert_eq!(open_edges([(air_glass(), false), (glass_liquid(), false)].iter()), 0);
         assert_eq!(open_edges([(liquid_air(), false), (glass_liquid(), true)].iter()), 0);
         assert!(open_edges([(air_glass(), false)].iter()) > 0, "the line where the liquid ends");
+    }
+
+    /// Area of the triangles \[m²\].
+    fn area(mesh: &Mesh) -> f64 {
+        let parts = mesh.triangles.iter().map(|triangle| {
+            let [a, b, c] = triangle.map(|index| mesh.vertices[usize::from(index)].position);
+            0.5 * (b - a).cross(c - a).length()
+        });
+        parts.sum()
+    }
+
+    /// Wall and glass, turned to one side, are one surface: only the wall's four edges are open.
+    #[test]
+    fn the_rose_window_fills_its_opening() {
+        let glass = [rose::inner_even(), rose::inner_odd(), rose::outer_even(), rose::outer_odd()];
+        let together = area(&rose::wall()) + glass.iter().map(area).sum::<f64>();
+        assert!((together - 2.6 * 2.4).abs() < 1e-12, "{together}");
+        let opening = glass.iter().map(area).sum::<f64>();
+        let circle = std::f64::consts::PI * 0.95_f64.powi(2);
+        // A polygon of 48 corners.
+        assert!((0.997..0.998).contains(&(opening / circle)), "{opening}");
+        let panes: Vec<_> = glass.into_iter().map(|mesh| (mesh, false)).collect();
+        assert_eq!(open_edges(panes.iter()), 48, "the panes meet");
+        let all: Vec<_> = panes.into_iter().chain([(rose::wall(), true)]).collect();
+        // The 48 rays end on the border, with its four corners.
+        assert_eq!(open_edges(all.iter()), 52);
     }
 
     /// Volume by the divergence theorem \[m³\].
