@@ -68,6 +68,10 @@ impl Input {
         method.batches = self.batches();
         method.caption = self.loaded.remarks.join("; ");
         method.provenance.push(("file".to_owned(), self.loaded.file.display().to_string()));
+        if self.loaded.window_only && self.loaded.arrays.bins > 0 {
+            let what = "the light of the window alone, from the bins".to_owned();
+            method.provenance.push(("steady image".to_owned(), what));
+        }
         if let Some(report) = &self.report {
             // Each pixel of the path tracer has paths of its own; photons are shared.
             if report.method.name == "path" {

@@ -248,6 +248,11 @@ fn steady_images_are_of_the_window_if_the_other_knows_no_more() {
     assert_eq!(found["results"][0]["steady"]["rmse"], 0.0, "{found:#}");
     let remarks = found["reference"]["remarks"].to_string();
     assert!(remarks.contains("arrives outside the window"), "{remarks}");
+    // Alone, the page says what its steady image is.
+    assert_done(&tpb(folder.path(), ["view", "same.npy"]));
+    let page = manifest(&folder.path().join("same.html"));
+    let provenance = page["methods"][0]["provenance"].to_string();
+    assert!(provenance.contains("light of the window alone"), "{provenance}");
 }
 
 #[test]
