@@ -153,7 +153,7 @@ fn response(page: &mut Page<'_>, reference: &Arrays) {
         ask_viewer(page, &set);
         let plot =
             ask_viewer(page, "tpbViewer.chart.plot.data.map((column) => Array.from(column))");
-        // Edges; then low, high and value of beams, path and reference.
+        // Edges; then low, high and value of path, beams and reference.
         assert_eq!(plot.as_array().expect("columns").len(), 1 + 3 * 3);
         for bin in 0..BINS {
             let exact = f64::from(reference.pixel(y * PIXELS + x)[3 * bin + channel]);
@@ -165,7 +165,7 @@ fn response(page: &mut Page<'_>, reference: &Arrays) {
             }
         }
     }
-    for (index, method) in [(0, "beams"), (1, "path")] {
+    for (index, method) in [(0, "path"), (1, "beams")] {
         let errors =
             ask_viewer(page, &format!("tpbViewer.viewer.cubes[{index}].entry.frames.nmse"));
         let lit = errors.as_array().expect("a list").iter().filter_map(Value::as_f64);

@@ -5,7 +5,9 @@
 //! * Bias of blocks of pixels: (x̄ − r)/r of their energy within the window, signed. A block is
 //!   coloured only where it is resolved: where Student's interval at 99 %, which holds the noise of
 //!   replicates and reference, leaves 0 out; of blocks without bias one in a hundred is coloured by
-//!   chance. The others are grey, and nothing is claimed of them.
+//!   chance. The others are grey, and nothing is claimed of them. Both variances are estimates, of n
+//!   replicates and, pixel by pixel, of the reference's K batches: the degrees of freedom of their sum
+//!   are Satterthwaite's (1946), V²/Σ(V_i²/f_i).
 
 use serde::{Deserialize, Serialize};
 
@@ -155,10 +157,18 @@ fn block(map: &Maps, truth: &Truth, pixels: &[usize]) -> (f64, f64) {
         .map(|residuals| pixels.iter().map(|&p| residuals[p]).sum::<f64>() / energy)
         .collect();
     let found = summarise(&sums);
-    let reference: f64 =
-        pixels.iter().map(|&p| truth.window_variance[p]).sum::<f64>() / (energy * energy);
-    let error = (found.standard_error * found.standard_error + reference).sqrt();
-    (found.mean, student::quantile(0.5 * CHANCE, sums.len() as f64 - 1.0) * error)
+    let own = found.standard_error * found.standard_error;
+    let (mut variance, mut uncertainty) = (own, own * own / (sums.len() as f64 - 1.0));
+    for &pixel in pixels {
+        let reference = truth.window_variance[pixel] / (energy * energy);
+        variance += reference;
+        uncertainty += reference * reference / truth.window_freedom;
+    }
+    if variance <= 0.0 {
+        return (found.mean, 0.0);
+    }
+    let freedom = variance * variance / uncertainty;
+    (found.mean, student::quantile(0.5 * CHANCE, freedom) * variance.sqrt())
 }
 
 /// A scale from one end of a colour map to the other, as a flat picture.
@@ -168,6 +178,8 @@ pub fn scale_bar(colour: impl Fn(f64) -> [u8; 3]) -> Picture {
 
 #[cfg(test)]
 mod tests {
+    use tpb_optics::Stream;
+
     use super::*;
     use crate::reproduce::testing::arrays;
 
@@ -201,6 +213,29 @@ mod tests {
         let picture = bias.picture(&truth, 0.01);
         assert_eq!((picture.pixels[10], picture.pixels[40]), (GREY, diverging(-1.0)));
         assert!((bias.by_chance() - 10.23).abs() < 1e-9);
+    }
+
+    /// Regression: where the reference's noise ruled, none of a thousand blocks was ever resolved.
+    #[test]
+    fn as_many_blocks_are_resolved_by_chance_as_is_said() {
+        let (batches, mut rng) = (8, Stream::new(5, 0, 0));
+        let mut normal = || (0..12).map(|_| rng.uniform()).sum::<f64>() - 6.0;
+        let (mut truth, _) = setting();
+        truth.judged.fill(true);
+        // Noise of the reference's batches; its mean is off by their mean, and so are all residuals.
+        let mut means = Vec::new();
+        for variance in &mut truth.window_variance {
+            let values: Vec<f64> = (0..batches).map(|_| 1e-2 * normal()).collect();
+            let found = summarise(&values);
+            *variance = found.standard_error * found.standard_error;
+            means.push(found.mean);
+        }
+        let window_residuals =
+            (0..5).map(|_| means.iter().map(|mean| 2e-3 * normal() - mean).collect()).collect();
+        let map = Maps { variance: vec![0.0; 64 * 64], window_residuals };
+        let bias = BiasMap::new(&map, &truth).unwrap();
+        // Binomial of 1024 blocks at 1 %: mean 10, standard deviation 3.2; from 1 to six of these above.
+        assert!((1..=30).contains(&bias.resolved()), "{} by chance", bias.resolved());
     }
 
     #[test]

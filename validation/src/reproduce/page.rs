@@ -24,7 +24,7 @@ const WORDS: usize = 48;
 /// Layout; colours come from the theme.
 const STYLE: &str = "
 body { margin: 0; background: var(--page); color: var(--ink); font: 16px/1.5 system-ui, sans-serif; }
-main { max-width: 72rem; margin: 0 auto; padding: 1rem; }
+main { max-width: 92rem; margin: 0 auto; padding: 1rem; }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: .5rem 0; }
 h2 { font-size: 1.25rem; margin: 2rem 0 .5rem; }
 p, li { max-width: 46rem; }
@@ -41,7 +41,7 @@ table.pictures th, table.pictures td { border: 0; padding: 2px; text-align: cent
   font-weight: 500; white-space: normal; }
 table.pictures th[scope=row] { writing-mode: vertical-rl; transform: rotate(180deg); color: var(--muted); }
 table.pictures tbody td { width: 16rem; }
-table.pictures img { display: block; width: 100%; min-width: 7rem; max-width: 16rem; image-rendering: pixelated;
+table.pictures img { display: block; width: 100%; min-width: 8rem; max-width: 16rem;
   background: var(--stage); }
 .chart { background: #fff; border-radius: 4px; display: block; width: 100%; min-width: 34rem; height: auto; }
 .scale { width: 16rem; height: 12px; image-rendering: pixelated; vertical-align: middle; }

@@ -67,6 +67,8 @@ pub struct Truth {
     pub judged: Vec<bool>,
     /// Variance of a pixel's energy within the window; empty if it is not known.
     pub window_variance: Vec<f64>,
+    /// Degrees of freedom of each of those variances: batches less one.
+    pub window_freedom: f64,
     /// CPU time of the reference \[s\].
     pub cpu_seconds: f64,
     /// [`Kind`] of each cell; empty until [`Truth::sort_cells`].
@@ -88,6 +90,7 @@ impl Truth {
             opl_edges: arrays.opl_edges,
             judged,
             window_variance,
+            window_freedom: made.batches.saturating_sub(1) as f64,
             cpu_seconds: made.cpu_seconds,
             kinds: Vec::new(),
             variance: Variance::Cells(mean_variance),
@@ -110,6 +113,7 @@ impl Truth {
             opl_edges: reference.opl_edges.clone(),
             judged: reference.mask.clone(),
             window_variance: Vec::new(),
+            window_freedom: 0.0,
             cpu_seconds: reference.provenance.cpu_seconds.unwrap_or(0.0),
             kinds: Vec::new(),
             variance: Variance::Separable {
@@ -263,6 +267,7 @@ impl Truth {
             opl_edges: (0..=bins).map(|edge| edge as f64).collect(),
             judged: vec![true; width * height],
             window_variance: Vec::new(),
+            window_freedom: 7.0,
             cpu_seconds: 1.0,
             kinds: Vec::new(),
             variance: Variance::Cells(vec![variance; values.len()]),

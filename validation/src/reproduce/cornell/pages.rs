@@ -156,6 +156,7 @@ fn viewer(
     let comparison = &result.picture;
     let method = |key: &str, index: usize, label: &str, arrays| {
         let mut method = Method::new(key, label, arrays);
+        method.batches = Some(comparison.replicates as u64);
         let spent = &comparison.whole().methods[index];
         method.provenance = report::provenance_of(&result.circumstances);
         method.provenance.push(("seed".into(), shown.contested.runs[index][0].seed.to_string()));
@@ -170,10 +171,11 @@ fn viewer(
     let beams = method("beams", 1, &format!("photon beams, {seconds} s"), beams);
     let mut truth = Method::new("reference", "reference: path tracing, long", reference);
     truth.is_reference = true;
+    truth.batches = Some(shown.contested.truth.window_freedom as u64 + 1);
     truth.pixel_errors = PixelErrors::Independent;
     truth.provenance = report::provenance_of(&result.circumstances);
     truth.provenance.push(("CPU s".into(), format!("{:.0}", comparison.reference_cpu_seconds)));
-    let mut page = tpb_viewer::Comparison::new("Cornell blocks", vec![beams, path_method, truth]);
+    let mut page = tpb_viewer::Comparison::new("Cornell blocks", vec![path_method, beams, truth]);
     page.caption = "Photon beams and path tracing at equal time, with a long path render.".into();
     page.judged = Some(shown.contested.truth.judged.clone());
     page.judged_label = "pixels that see no lamp".into();

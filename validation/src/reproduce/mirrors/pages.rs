@@ -268,6 +268,7 @@ pub(super) fn caustics_viewer(
         .map(|((name, seconds), arrays)| {
             let key = name.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
             let mut method = Method::new(key, format!("{name}, {seconds:.0} CPU s"), arrays);
+            method.batches = Some(found.batches);
             if name == "path" {
                 method.pixel_errors = PixelErrors::Independent;
             }
