@@ -22,9 +22,9 @@ const BINS: usize = 24;
 /// Both figures on a tiny film.
 fn reproduce(out: &Path) {
     let options = Options {
-        time: Duration::from_millis(40),
-        reference_time: Duration::from_millis(200),
-        replicates: 3,
+        time: Duration::from_millis(200),
+        reference_time: Duration::from_secs(1),
+        replicates: 4,
         pixels: Some(PIXELS),
         bins: Some(BINS),
         scenes: Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes"),
@@ -139,8 +139,9 @@ fn viewer(page: &mut Page<'_>, file: &str) {
     page.viewport(Viewport::PHONE).expect("a phone");
     for theme in ["light", "dark"] {
         page.prefer("prefers-color-scheme", theme).expect("a theme");
-        let widths = ask_viewer(page, "[document.documentElement.scrollWidth, innerWidth].join()");
-        assert_eq!(widths, "390,390", "{file}, {theme}");
+        // The chart follows the screen a moment later.
+        let fits = "innerWidth === 390 && document.documentElement.scrollWidth === 390";
+        page.wait_for(fits).unwrap_or_else(|error| panic!("{file}, {theme}: {error}"));
     }
 }
 
