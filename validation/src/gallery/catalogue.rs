@@ -124,7 +124,8 @@ pub const ENTRIES: [Entry; 12] = [
         title: "Frosted glass and copper",
         text: "The upper half of a spot light's beam passes over a block of frosted glass, the lower \
                half through it; a slab of rough copper throws both up to the ceiling. Rough surfaces \
-               are no limit of any method: all three agree on every pixel.",
+               make no method leave light out, but path tracing finds the lamp through the block by \
+               chance alone, and is noisy.",
         moments: [
             at(0.300, "half of the front passes above the block; the other half is in the glass"),
             at(0.380, "above the front is sharp, behind the glass it is late and spread"),
