@@ -1,9 +1,9 @@
 //! The floor of the chapel as an image, made from a formula: a compass rose of marble among tiles.
 //!
 //! `cargo xtask meshes` writes it as `scenes/textures/compass.png`, and a test keeps that file equal
-//! to what is made here. The image covers a floor of [`FLOOR`] metres, its columns along the first;
-//! the star stands at [`CENTRE`]. Each texel is the mean of 4 x 4 samples of the linear reflectance,
-//! coded by sRGB's curve (IEC 61966-2-1).
+//! to what is made here. The image covers a floor of 3.2 m x 2.6 m, its columns along the first; the
+//! star stands 0.35 m that way from the middle. Each texel is the mean of 4 x 4 samples of the linear
+//! reflectance, coded by sRGB's curve (IEC 61966-2-1).
 
 use std::f64::consts::TAU;
 use std::io::Cursor;
@@ -11,7 +11,7 @@ use std::io::Cursor;
 use glam::DVec2;
 
 /// Width and height of the image.
-pub const SIZE: [usize; 2] = [448, 364];
+const SIZE: [usize; 2] = [448, 364];
 /// What it covers \[m\].
 const FLOOR: DVec2 = DVec2::new(3.2, 2.6);
 /// The middle of the star, from the middle of the floor \[m\].
@@ -49,7 +49,7 @@ pub fn png() -> Vec<u8> {
 }
 
 /// The texels, row by row.
-pub fn texels() -> Vec<u8> {
+fn texels() -> Vec<u8> {
     let [width, height] = SIZE;
     let size = DVec2::new(width as f64, height as f64);
     let texel = |index: usize| {
