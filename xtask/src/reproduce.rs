@@ -81,7 +81,7 @@ pub(crate) struct ReproduceArgs {
     /// Time bins over the scenes' windows: a trial
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=100_000))]
     bins: Option<u32>,
-    /// Output folder [default: target/reproduce]
+    /// Output folder [default: target/reproduce, of trials target/reproduce-trial]
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -126,6 +126,9 @@ fn on_interrupt(stop: &AtomicBool) {
 
 fn options(args: &ReproduceArgs) -> Options {
     let size = |n: Option<u32>| n.map(|n| n as usize);
+    let is_trial = args.pixels.is_some() || args.bins.is_some();
+    // A trial does not take the place of what took long.
+    let folder = if is_trial { "target/reproduce-trial" } else { "target/reproduce" };
     Options {
         time: args.time,
         reference_time: args.reference_time.unwrap_or(args.time * 10),
@@ -133,7 +136,7 @@ fn options(args: &ReproduceArgs) -> Options {
         pixels: size(args.pixels),
         bins: size(args.bins),
         scenes: root().join("scenes"),
-        out: args.out.clone().unwrap_or_else(|| root().join("target/reproduce")),
+        out: args.out.clone().unwrap_or_else(|| root().join(folder)),
         circumstances: circumstances::of(args.threads, args.seed),
         command: command(args),
     }

@@ -14,6 +14,7 @@ use super::page::Page;
 use super::{Options, report, tables, write_json, write_text};
 use crate::error::Result;
 use crate::statistics::{Factor, Winner};
+use crate::suite::Circumstances;
 
 /// Where each scene's files are.
 const PAGE: &str = "index.html";
@@ -175,7 +176,14 @@ impl Summary {
         for (name, comparison) in self.comparisons() {
             page.note(&format!("{name}: {}", tables::won(comparison, Winner::First)));
         }
-        report::provenance(&mut page, &options.circumstances, &options.command, &[]);
+        // A scene may be of an earlier run.
+        let made = |about: &Circumstances, command: &str| format!("{}: {command}", about.commit);
+        let cornell =
+            self.cornell.as_ref().map(|r| (cornell::NAME, made(&r.circumstances, &r.command)));
+        let mirrors =
+            self.mirrors.as_ref().map(|r| (mirrors::NAME, made(&r.circumstances, &r.command)));
+        let scenes: Vec<_> = cornell.into_iter().chain(mirrors).collect();
+        report::provenance(&mut page, &options.circumstances, &options.command, &scenes);
         page.write(&out.join(PAGE)).map(drop)
     }
 }
