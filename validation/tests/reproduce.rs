@@ -105,7 +105,7 @@ fn document(page: &mut Page<'_>, out: &Path, file: &str, charts: usize, tables: 
             let width = viewport.width;
             assert_eq!(widths, format!("{width},{width}"), "{file}, {theme}: nothing sticks out");
             let texts = "['h1', 'h2', 'p', 'a', 'td', 'th', 'caption', 'figcaption', '.note', 'dt', \
-                         'dd', 'code', 'li']";
+                         'dd', 'code', 'li', 'summary']";
             let faint = format!(
                 "{texts}.flatMap((s) => [...document.querySelectorAll(s)].slice(0, 3)) \
                  .filter((e) => {CONTRAST}(e) < 4.5).map((e) => e.outerHTML.slice(0, 80))"

@@ -45,14 +45,15 @@ pub fn losses(comparison: &Comparison) -> Vec<Loss> {
 
 fn reason(comparison: &Comparison, part: &Part) -> String {
     let Some(Some(beams)) = part.splits.get(1) else { return "not known".to_owned() };
-    let share = 100.0 * beams.squared_bias.value / beams.nmse.value;
+    let [low, high] = beams.squared_bias.interval.map(|end| 100.0 * end / beams.nmse.value);
     match cause(beams) {
-        Cause::Blur => format!("blur: {share:.0} % of the beams' error is squared bias"),
-        Cause::Open => {
-            format!("blur or noise, not resolved: {share:.0} % of the beams' error is squared bias")
-        }
+        Cause::Blur => format!("blur: {low:.0} % of the beams' error at least is squared bias"),
+        Cause::Open => "blur or noise, not resolved".to_owned(),
         Cause::Noise => {
-            let noise = format!("noise: {:.0} % of the beams' error is variance", 100.0 - share);
+            let noise = format!(
+                "noise: {:.0} % of the beams' error at most is squared bias",
+                high.max(0.0)
+            );
             match paths(comparison) {
                 Some(paths) if is_seen(comparison, part) => format!("{noise}; {paths}"),
                 _ => noise,
@@ -149,8 +150,8 @@ mod tests {
         // 4 passes of 25 and 2 of 8: see the comparison for tests.
         let counted = "path tracing makes 100 in a pixel in this time, beams 16";
         assert!(found[0].reason.contains(counted), "{}", found[0].reason);
-        assert_eq!(found[1].reason, "blur: 90 % of the beams' error is squared bias");
+        assert_eq!(found[1].reason, "blur: 75 % of the beams' error at least is squared bias");
         assert!(found[2].reason.starts_with("blur or noise"));
-        assert_eq!(found[3].reason, "noise: 95 % of the beams' error is variance");
+        assert_eq!(found[3].reason, "noise: 10 % of the beams' error at most is squared bias");
     }
 }

@@ -34,9 +34,12 @@ code { background: var(--field); padding: .1em .3em; border-radius: 4px; overflo
   padding: .6rem; margin: .6rem 0; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
 caption { text-align: left; color: var(--muted); padding-bottom: .4rem; }
+caption span { display: block; position: sticky; left: 0; max-width: min(60rem, calc(100vw - 3.4rem)); }
+details { margin: .6rem 0; } summary { cursor: pointer; color: var(--muted); }
 th, td { padding: .2rem .6rem; text-align: right; border-bottom: 1px solid var(--line); white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
-td.words { white-space: normal; text-align: left; min-width: 18rem; }
+th.text, td.text { text-align: left; }
+td.words { white-space: normal; min-width: 14rem; }
 table.pictures th, table.pictures td { border: 0; padding: 2px; text-align: center; font-size: .85rem;
   font-weight: 500; white-space: normal; }
 table.pictures th[scope=row] { writing-mode: vertical-rl; transform: rotate(180deg); color: var(--muted); }
@@ -123,18 +126,17 @@ impl Page {
         ));
     }
 
-    /// A table; the first column names the rows.
+    /// A table; the first column names the rows, columns of words begin at their left.
     pub fn table(&mut self, caption: &str, head: &[&str], rows: &[Vec<String>]) {
-        let head = joined(head, |cell| format!("<th scope=\"col\">{}</th>", escape(cell)));
-        let cell = |cell: &String| {
-            let class = if cell.len() > WORDS { " class=\"words\"" } else { "" };
-            format!("<td{class}>{}</td>", escape(cell))
-        };
-        let rows = joined(rows, |row| format!("<tr>{}</tr>\n", joined(row, cell)));
-        self.push(format!(
-            "<div class=\"wide\"><table><caption>{}</caption><thead><tr>{head}</tr></thead><tbody>\n{rows}</tbody></table></div>\n",
-            escape(caption)
-        ));
+        let caption = format!("<caption><span>{}</span></caption>", escape(caption));
+        self.push(table(&caption, head, rows));
+    }
+
+    /// A long table that is opened by its caption.
+    pub fn folded_table(&mut self, caption: &str, head: &[&str], rows: &[Vec<String>]) {
+        let table = table("", head, rows);
+        let caption = escape(caption);
+        self.push(format!("<details><summary>{caption}</summary>{table}</details>\n"));
     }
 
     /// Pictures in rows and columns with names; each has a text for those who cannot see it.
@@ -251,6 +253,37 @@ impl Page {
     }
 }
 
+fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> String {
+    let classes: Vec<&str> = (0..head.len()).map(|column| class(column, rows)).collect();
+    let head: Vec<String> = head
+        .iter()
+        .zip(&classes)
+        .map(|(cell, class)| format!("<th scope=\"col\" class=\"{class}\">{}</th>", escape(cell)))
+        .collect();
+    let row = |row: &Vec<String>| {
+        let cells: Vec<String> = row
+            .iter()
+            .zip(&classes)
+            .map(|(cell, class)| {
+                let words = if cell.len() > WORDS { " words" } else { "" };
+                format!("<td class=\"{class}{words}\">{}</td>", escape(cell))
+            })
+            .collect();
+        format!("<tr>{}</tr>\n", cells.concat())
+    };
+    format!(
+        "<div class=\"wide\"><table>{caption}<thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
+        head.concat(),
+        joined(rows, row)
+    )
+}
+
+/// Whether all that stands in a column begins with a letter.
+fn class(column: usize, rows: &[Vec<String>]) -> &'static str {
+    let mut cells = rows.iter().filter_map(|row| row.get(column)).filter(|cell| !cell.is_empty());
+    if cells.all(|cell| cell.starts_with(char::is_alphabetic)) { "text" } else { "number" }
+}
+
 /// The texts of all items, one after the other.
 fn joined<T>(items: &[T], text: impl Fn(&T) -> String) -> String {
     items.iter().map(text).collect::<Vec<_>>().concat()
@@ -289,6 +322,7 @@ mod tests {
             "1 &lt; 2",
             "alt=\"a &quot;frame&quot;\"",
             "<th scope=\"col\">4.2 m</th>",
+            "<th scope=\"col\" class=\"text\">name</th><th scope=\"col\" class=\"number\">value</th>",
             "--accent",
             "<dt>commit</dt><dd>abc</dd>",
             "width=device-width",

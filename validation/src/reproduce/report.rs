@@ -28,13 +28,19 @@ pub(crate) fn numbers(page: &mut Page, comparison: &Comparison) {
         ("OPL", "By window of time, at the whole render time", &comparison.windows),
         ("cells", "By kind of cell: where beams win, and where they lose", &comparison.kinds),
         ("pixels", "Pixels that are not judged; share of all pixels' \u{3a3}r\u{b2}", &lamps),
-        ("cells, OPL", "By kind of cell and window of time", &comparison.kinds_in_windows),
     ] {
         if !parts.is_empty() {
             let heads = tables::by_part_heads(what, comparison);
             let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
             page.table(caption, &heads, &tables::by_part(comparison, parts));
         }
+    }
+    let parts = &comparison.kinds_in_windows;
+    if !parts.is_empty() {
+        let heads = tables::by_part_heads("cells, OPL", comparison);
+        let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+        let rows = tables::by_part(comparison, parts);
+        page.folded_table("By kind of cell and window of time", &heads, &rows);
     }
     lost(page, comparison);
     page.list(&[tables::won(comparison, Winner::First), tables::won(comparison, Winner::Second)]);
