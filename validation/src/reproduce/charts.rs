@@ -102,3 +102,35 @@ fn nothing(title: &str) -> String {
          <text x=\"20\" y=\"40\" font-family=\"sans-serif\">{title}: nothing is resolved</text></svg>"
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reproduce::testing::comparison;
+    use crate::statistics::Factor;
+
+    #[test]
+    fn resolved_errors_and_factors_are_drawn_for_both_methods() {
+        let mut comparison = comparison();
+        let split = comparison.times[0].methods[0].judged.clone();
+        let frame = |bin: i32| Part {
+            label: format!("bin {bin}"),
+            opl: [f64::from(bin), f64::from(bin + 1)],
+            share: 0.25,
+            splits: vec![Some(split.clone()), Some(split.clone())],
+            factor: Some(Factor { value: Some(2.0), low: 1.5, high: Some(3.0) }),
+        };
+        comparison.frames = (0..4).map(frame).collect();
+        let lines = |svg: &str| svg.matches("<polyline").count();
+        for svg in
+            [error_by_bin(&comparison, "t").unwrap(), error_by_time(&comparison, "t").unwrap()]
+        {
+            assert!(svg.contains("path") && svg.contains("beams"));
+            assert!(lines(&svg) >= 2, "a curve for each method");
+        }
+        assert!(lines(&factor_by_bin(&comparison, "t").unwrap()) >= 2, "factor, and where it is 1");
+        comparison.frames.clear();
+        let nothing = error_by_bin(&comparison, "t").unwrap();
+        assert!(nothing.contains("nothing is resolved") && lines(&nothing) == 0);
+    }
+}
