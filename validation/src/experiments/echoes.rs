@@ -163,7 +163,7 @@ impl Experiment for SlabEchoes {
 
     fn run(&self, context: &Context) -> Result<Outcome> {
         let sights = self.sights(context)?;
-        let plan = BatchPlan { batches: 96, passes: 1, seed: context.seed };
+        let plan = BatchPlan { batches: 80, passes: 1, seed: context.seed };
         // The weak echoes are rare: 1 %.
         let criterion = context.blurred();
         Sights { estimator: self.who.estimator(2500), plan, criterion, at: &sights }.run(context)

@@ -1,11 +1,14 @@
-//! One smooth interface between two lamps: the choice between reflection and refraction.
+//! One smooth interface, or a thin slab, between two lamps: the choice between reflection and
+//! refraction.
 //!
 //! The camera looks at a plane interface under the angle θ_i. Reflection shows one lamp with radiance
 //! R L_r, refraction another with (1 − R) L_t (η_i/η_t)²: radiance over η² is what refraction keeps.
 //! They arrive at different times, so that the bins tell them apart: probability of the choice,
 //! its weight, the factor η², total internal reflection and OPL inside glass in one picture. R is
 //! written here from the amplitudes r_s = −sin(θ_i − θ_t)/sin(θ_i + θ_t),
-//! r_p = tan(θ_i − θ_t)/tan(θ_i + θ_t).
+//! r_p = tan(θ_i − θ_t)/tan(θ_i + θ_t). A thin slab has two interfaces without a way between them:
+//! its echoes are one instant, and sum to 2R/(1 + R) (Born & Wolf 1999, section 7.6, without
+//! interference; R unpolarised at each interface, as in Mitsuba); what passes keeps its direction.
 
 use std::sync::Arc;
 
@@ -34,9 +37,28 @@ const TRANSMITTED: f64 = 2.0;
 const GLASS: f64 = 1.5;
 const SIDE: usize = 8;
 
-/// Angle of incidence in degrees, and whether the camera is inside the glass.
-const CASES: [(f64, bool); 5] =
-    [(10.0, false), (75.0, false), (82.0, false), (40.5, true), (60.0, true)];
+/// What the camera looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Glass {
+    /// The surface of a block, from outside.
+    Outside,
+    /// The same, from inside.
+    Inside,
+    /// A slab too thin to delay light.
+    Thin,
+}
+
+/// Angle of incidence in degrees.
+const CASES: [(f64, Glass); 8] = [
+    (10.0, Glass::Outside),
+    (75.0, Glass::Outside),
+    (82.0, Glass::Outside),
+    (40.5, Glass::Inside),
+    (60.0, Glass::Inside),
+    (10.0, Glass::Thin),
+    (65.0, Glass::Thin),
+    (80.0, Glass::Thin),
+];
 
 /// A method that chooses at interfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,8 +84,8 @@ struct Expected {
     eta_squared: f64,
 }
 
-fn expected(angle: f64, inside: bool) -> Expected {
-    let (eta_i, eta_t) = if inside { (GLASS, 1.0) } else { (1.0, GLASS) };
+fn expected(angle: f64, glass: Glass) -> Expected {
+    let (eta_i, eta_t) = if glass == Glass::Inside { (GLASS, 1.0) } else { (1.0, GLASS) };
     let theta_i = angle.to_radians();
     let sine = eta_i / eta_t * theta_i.sin();
     let reflected_opl = eta_i * 3.0 / theta_i.cos();
@@ -81,6 +103,16 @@ fn expected(angle: f64, inside: bool) -> Expected {
     let s = (theta_i - theta_t).sin() / (theta_i + theta_t).sin();
     let p = (theta_i - theta_t).tan() / (theta_i + theta_t).tan();
     let reflectance = 0.5 * (s * s + p * p);
+    if glass == Glass::Thin {
+        let reflectance = 2.0 * reflectance / (1.0 + reflectance);
+        return Expected {
+            reflected: reflectance * REFLECTED,
+            transmitted: (1.0 - reflectance) * TRANSMITTED,
+            reflected_opl,
+            transmitted_opl: 2.0 / theta_i.cos(),
+            eta_squared: 1.0,
+        };
+    }
     Expected {
         reflected: reflectance * REFLECTED,
         transmitted: (1.0 - reflectance) * TRANSMITTED * (eta_i / eta_t).powi(2),
@@ -91,7 +123,7 @@ fn expected(angle: f64, inside: bool) -> Expected {
 }
 
 /// Interface at z = 1, a lamp behind it at z = 2, and one behind the camera at z = −1.
-fn scene(angle: f64, inside: bool) -> Result<Scene> {
+fn scene(angle: f64, glass: Glass) -> Result<Scene> {
     let view = View { pixels: SIDE, fov: 0.01, time: Some(TIME), integrator: only_depth(2) };
     let mut parts = view.parts();
     let to_world = DAffine3::from_rotation_y(angle.to_radians());
@@ -108,7 +140,7 @@ fn scene(angle: f64, inside: bool) -> Result<Scene> {
         radiance: Some(Rgb::splat(radiance)),
     };
     // The interior is opposite to the normal.
-    let glass = Dielectric {
+    let dielectric = Dielectric {
         interior_eta: GLASS,
         exterior_eta: 1.0,
         reflectance: Rgb::ONE,
@@ -117,8 +149,11 @@ fn scene(angle: f64, inside: bool) -> Result<Scene> {
     parts.shapes = vec![
         ShapePart {
             name: "interface".into(),
-            primitives: disc(1.0, if inside { 1.0 } else { -1.0 }),
-            bsdf: Bsdf::Dielectric(glass),
+            primitives: disc(1.0, if glass == Glass::Inside { 1.0 } else { -1.0 }),
+            bsdf: match glass {
+                Glass::Thin => Bsdf::ThinDielectric(dielectric),
+                Glass::Outside | Glass::Inside => Bsdf::Dielectric(dielectric),
+            },
             boundary: None,
             radiance: None,
         },
@@ -140,9 +175,9 @@ fn around(name: String, opl: f64) -> LinearContrast {
 impl FresnelChoice {
     fn estimator(self) -> Estimator {
         match self {
-            Self::Path => Estimator::Path(PathOptions { samples_per_pass: 2500.try_into().ok() }),
+            Self::Path => Estimator::Path(PathOptions { samples_per_pass: 1600.try_into().ok() }),
             Self::Beams => Estimator::Beams(BeamOptions {
-                surface_samples: Some(2500),
+                surface_samples: Some(1600),
                 ..BeamOptions::default()
             }),
         }
@@ -152,11 +187,15 @@ impl FresnelChoice {
         self,
         context: &Context,
         angle: f64,
-        inside: bool,
+        glass: Glass,
     ) -> Result<(Vec<Target>, Vec<Vec<f64>>)> {
-        let scene = scene(angle, inside)?;
-        let e = expected(angle, inside);
-        let side = if inside { "from inside" } else { "from outside" };
+        let scene = scene(angle, glass)?;
+        let e = expected(angle, glass);
+        let side = match glass {
+            Glass::Outside => "from outside",
+            Glass::Inside => "from inside",
+            Glass::Thin => "at a thin slab",
+        };
         let mut contrasts = vec![];
         // A rare part is known from its complement.
         for (what, value, opl, eta_squared) in [
@@ -192,7 +231,8 @@ impl Experiment for FresnelChoice {
     }
 
     fn description(&self) -> String {
-        "reflection and refraction at one interface, told apart by time, against Fresnel".into()
+        "reflection and refraction at one interface and at a thin slab, told apart by time, against \
+         Fresnel".into()
     }
 
     fn twins(&self, effort: Effort) -> Vec<Sabotage> {
@@ -202,8 +242,8 @@ impl Experiment for FresnelChoice {
 
     fn run(&self, context: &Context) -> Result<Outcome> {
         let (mut targets, mut values) = (Vec::new(), vec![Vec::new(); 64]);
-        for (angle, inside) in CASES {
-            let (more, columns) = self.case(context, angle, inside)?;
+        for (angle, glass) in CASES {
+            let (more, columns) = self.case(context, angle, glass)?;
             targets.extend(more);
             for (row, column) in values.iter_mut().zip(columns) {
                 row.extend(column);
@@ -223,12 +263,16 @@ mod tests {
 
     #[test]
     fn energy_is_conserved_and_total_reflection_is_total() {
-        for (angle, inside) in CASES {
-            let e = expected(angle, inside);
-            let factor = if inside { GLASS * GLASS } else { 1.0 / (GLASS * GLASS) };
+        for (angle, glass) in CASES {
+            let e = expected(angle, glass);
+            let factor = match glass {
+                Glass::Outside => 1.0 / (GLASS * GLASS),
+                Glass::Inside => GLASS * GLASS,
+                Glass::Thin => 1.0,
+            };
             let sum = e.reflected / REFLECTED + e.transmitted / (TRANSMITTED * factor);
             assert!((sum - 1.0).abs() < 1e-14);
         }
-        assert_eq!(expected(60.0, true).transmitted, 0.0);
+        assert_eq!(expected(60.0, Glass::Inside).transmitted, 0.0);
     }
 }

@@ -102,7 +102,7 @@ impl Experiment for Furnace {
         Comparison {
             scene: &scene,
             estimator: self.who.estimator(600, 100_000),
-            plan: BatchPlan { batches: 96, passes, seed: context.seed },
+            plan: BatchPlan { batches: 80, passes, seed: context.seed },
             expected: &expected,
             coarser: None,
             contrasts: &standard(&expected, &blocks((SIDE, SIDE), (2, 1)), 3),

@@ -204,7 +204,7 @@ impl Experiment for GlassFog {
         Comparison {
             scene: &scene,
             estimator: self.who.estimator(),
-            plan: BatchPlan { batches: 96, passes, seed: context.seed },
+            plan: BatchPlan { batches: 80, passes, seed: context.seed },
             expected: &expected,
             coarser: Some(&coarser),
             contrasts: &contrasts,

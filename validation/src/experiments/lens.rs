@@ -191,7 +191,7 @@ impl Experiment for LaserThroughBall {
         Comparison {
             scene: &scene,
             estimator: self.estimator(),
-            plan: BatchPlan { batches: 96, passes: 1, seed: context.seed },
+            plan: BatchPlan { batches: 80, passes: 1, seed: context.seed },
             expected: &expected,
             coarser: Some(&coarser),
             contrasts: &contrasts,

@@ -367,7 +367,7 @@ impl Experiment for MirrorFloor {
             _ => (3, 1),
         };
         let contrasts = standard(&expected.cube, &blocks(Self::PIXELS, (2, 1)), shares);
-        let plan = BatchPlan { batches: 96, passes, seed: context.seed };
+        let plan = BatchPlan { batches: 80, passes, seed: context.seed };
         Comparison {
             scene: &scene,
             estimator: self.who.estimator(2500, 200_000, Self::BLUR),

@@ -40,7 +40,7 @@ use crate::statistics::{Batches, Criterion, Target, judge};
 /// Distance of camera, laser and lamps from the slab \[m\].
 const GAP: f64 = 1e-4;
 /// Batches of every comparison.
-const BATCHES: u64 = 96;
+const BATCHES: u64 = 80;
 
 /// A slab from z = [`GAP`] on, with a mean cosine and coefficients per metre.
 #[derive(Clone, Copy, Debug, PartialEq)]

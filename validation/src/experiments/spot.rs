@@ -158,7 +158,7 @@ impl Experiment for SphereSpot {
         Comparison {
             scene: &scene,
             estimator: self.who.estimator(1200, 200_000),
-            plan: BatchPlan { batches: 96, passes: 1, seed: context.seed },
+            plan: BatchPlan { batches: 80, passes: 1, seed: context.seed },
             expected: &expected,
             coarser: Some(&coarser),
             contrasts: &contrasts,

@@ -65,8 +65,33 @@ impl Frame {
         rule: &[(f64, f64)],
         bins: impl Fn(PlanePoint, &mut [f64]) -> std::result::Result<(), ReferenceError> + Sync,
     ) -> Result<Cube> {
+        self.average_of_rows(self.side, rule, bins)
+    }
+
+    /// The same of what is alike above and below the middle of the image.
+    pub fn average_of_mirrored(
+        &self,
+        rule: &[(f64, f64)],
+        bins: impl Fn(PlanePoint, &mut [f64]) -> std::result::Result<(), ReferenceError> + Sync,
+    ) -> Result<Cube> {
+        let mut cube = self.average_of_rows(self.side.div_ceil(2), rule, bins)?;
+        for pixel in self.side.div_ceil(2) * self.side..cube.pixels() {
+            let (column, row) = (pixel % self.side, pixel / self.side);
+            let alike = cube.pixel((self.side - 1 - row) * self.side + column).to_vec();
+            cube.pixel_mut(pixel).copy_from_slice(&alike);
+        }
+        Ok(cube)
+    }
+
+    /// The first rows; the others stay 0.
+    fn average_of_rows(
+        &self,
+        rows: usize,
+        rule: &[(f64, f64)],
+        bins: impl Fn(PlanePoint, &mut [f64]) -> std::result::Result<(), ReferenceError> + Sync,
+    ) -> Result<Cube> {
         let mut cube = Cube::zero(self.side, self.side, self.time.bins);
-        let pixels: Vec<Vec<f64>> = (0..cube.pixels())
+        let pixels: Vec<Vec<f64>> = (0..rows * self.side)
             .into_par_iter()
             .map(|pixel| {
                 let mut sums = vec![0.0; self.time.bins];

@@ -145,7 +145,8 @@ impl Case for Fog {
     fn expected(&self, channel: &Channel, blur: Option<(Blur, f64)>) -> Result<Expected> {
         let frame = self.frame();
         let cube = |points: usize| {
-            frame.average(&gauss(points), |point, bins| {
+            // The angle to the lamp, beside the camera, is alike above and below.
+            frame.average_of_mirrored(&gauss(points), |point, bins| {
                 let alpha = (1.0 + point.y * point.y).sqrt().atan2(point.x);
                 for (index, value) in bins.iter_mut().enumerate() {
                     let ends = (frame.edge(index), frame.edge(index + 1));
