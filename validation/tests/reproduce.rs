@@ -25,6 +25,7 @@ fn reproduce(out: &Path) {
         time: Duration::from_millis(200),
         reference_time: Duration::from_secs(1),
         replicates: 4,
+        old_references: false,
         pixels: Some(PIXELS),
         bins: Some(BINS),
         scenes: Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes"),

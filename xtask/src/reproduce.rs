@@ -21,10 +21,13 @@ const EXAMPLES: &str = "Examples:
   cargo xtask reproduce mirrors --pixels 64 --bins 80 --time 2    a trial
 
 Time of a run is that of one render at picture quality; all other renders take a fixed part or
-multiple of it: the plan is printed first. References are kept in the output folder and used again; a
-larger --reference-time adds to them. Ctrl-c ends the run after the render under way, a second one at
+multiple of it: the plan is printed first. References are kept in the output folder and used again by
+the same commit; a larger --reference-time adds to them. Ctrl-c ends the run after the render under way, a second one at
 once; whatever was finished is kept, and the same command goes on there (same commit, sources as
 committed).
+
+A trial (--pixels, --bins, or less than the default --time) writes to a folder of its own, trials/NAME
+below the output folder, and its pages say that it is one.
 
 Writes index.html, table.md, and for each scene a folder with index.html, viewer.html, result.json,
 pictures and charts. No page takes more than 20 MB; what had to be reduced for that is said on it.";
@@ -60,12 +63,15 @@ pub(crate) struct ReproduceArgs {
     /// Which scenes
     #[arg(value_enum, default_value = "all")]
     which: Which,
-    /// Wall time of one render of the equal-time comparison
+    /// Wall time of one render of the equal-time comparison; less than the default is a trial
     #[arg(long, value_name = "SECONDS", default_value = "40", value_parser = seconds)]
     time: Duration,
     /// Wall time of the reference at picture quality [default: 10 times --time]
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     reference_time: Option<Duration>,
+    /// Go on with references that sources of other commits made; pages say so. Else they are made anew
+    #[arg(long)]
+    old_references: bool,
     /// Renders of each method, at least 3
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u64).range(3..=100))]
     replicates: u64,
@@ -81,7 +87,7 @@ pub(crate) struct ReproduceArgs {
     /// Time bins over the scenes' windows: a trial
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(8..=100_000))]
     bins: Option<u32>,
-    /// Output folder [default: target/reproduce, of trials target/reproduce-trial]
+    /// Output folder [default: target/reproduce]; a trial has a folder of its own in it
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -126,20 +132,19 @@ fn on_interrupt(stop: &AtomicBool) {
 
 fn options(args: &ReproduceArgs) -> Options {
     let size = |n: Option<u32>| n.map(|n| n as usize);
-    let is_trial = args.pixels.is_some() || args.bins.is_some();
-    // A trial does not take the place of what took long.
-    let folder = if is_trial { "target/reproduce-trial" } else { "target/reproduce" };
-    Options {
+    let options = Options {
         time: args.time,
         reference_time: args.reference_time.unwrap_or(args.time * 10),
         replicates: args.replicates,
+        old_references: args.old_references,
         pixels: size(args.pixels),
         bins: size(args.bins),
         scenes: root().join("scenes"),
-        out: args.out.clone().unwrap_or_else(|| root().join(folder)),
+        out: args.out.clone().unwrap_or_else(|| root().join("target/reproduce")),
         circumstances: circumstances::of(args.threads, args.seed),
         command: command(args),
-    }
+    };
+    options.apart()
 }
 
 /// The command that repeats this run.
@@ -157,6 +162,9 @@ fn command(args: &ReproduceArgs) -> String {
         ("pixels", args.pixels.map(|n| n.to_string())),
         ("bins", args.bins.map(|n| n.to_string())),
     ];
+    if args.old_references {
+        command += " --old-references";
+    }
     for (name, value) in numbers {
         command += &value.map_or(String::new(), |value| format!(" --{name} {value}"));
     }

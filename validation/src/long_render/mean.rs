@@ -12,7 +12,7 @@
 //! | `mean_variance` | f4 (H, W, T) | variance of the mean over channels |
 //! | `window_variance` | f8 (H, W) | variance of the sum over bins of the mean over channels |
 //! | `judged` | u1 (H, W) | 1: judged ([`crate::judged`]) |
-//! | `provenance` | u1 (N) | JSON: scene, method, seed, batches, passes, seconds, commits, values |
+//! | `provenance` | u1 (N) | JSON: scene, method, seed, batches, passes, seconds, commits, commands, values |
 
 use std::path::Path;
 
@@ -49,6 +49,9 @@ pub struct Made {
     pub cpu_seconds: f64,
     /// Commits of the sources that made it.
     pub commits: Vec<String>,
+    /// Commands that made it, as far as they are known.
+    #[serde(default)]
+    pub commands: Vec<String>,
     /// What was asked of each batch.
     #[serde(default)]
     pub values: Vec<Vec<f64>>,
@@ -60,12 +63,14 @@ fn path() -> String {
 
 impl Made {
     /// Counts what a batch took.
-    pub(super) fn count(&mut self, summary: &RunSummary, commit: &str) {
+    pub(super) fn count(&mut self, summary: &RunSummary, commit: &str, command: &str) {
         self.camera_paths += summary.counts.camera_paths;
         self.wall_seconds += summary.wall_seconds;
         self.cpu_seconds += summary.cpu_seconds.unwrap_or(summary.wall_seconds);
-        if self.commits.last().is_none_or(|last| last != commit) {
-            self.commits.push(commit.to_owned());
+        for (list, one) in [(&mut self.commits, commit), (&mut self.commands, command)] {
+            if !one.is_empty() && list.last().is_none_or(|last| last != one) {
+                list.push(one.to_owned());
+            }
         }
     }
 }

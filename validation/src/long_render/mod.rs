@@ -54,8 +54,10 @@ pub struct LongRender<'a> {
     pub seed: u64,
     /// Commit of the sources.
     pub commit: &'a str,
+    /// The command that is carried out; empty if it is not kept.
+    pub command: &'a str,
     /// Whether only batches of this seed and commit go on, as for what is measured; a truth may have
-    /// any.
+    /// any, and says whose it has ([`Made`]).
     pub own: bool,
     /// Numbers that are kept of every batch, in [`Made::values`].
     pub values: &'a Values<'a>,
@@ -88,6 +90,7 @@ impl<'a> LongRender<'a> {
             passes,
             seed,
             commit,
+            command: "",
             own,
             values: &no_values,
         }
@@ -164,7 +167,7 @@ impl<'a> LongRender<'a> {
             whole.add(&arrays);
             whole.made.values.push((self.values)(&arrays));
             drop(arrays);
-            whole.made.count(&summary, self.commit);
+            whole.made.count(&summary, self.commit, self.command);
             keep(whole)?;
             self.tell(&whole.made, watch);
         }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::halves::HalfCube;
 use super::judge::Products;
 use super::race::{Replicate, Spent};
-use super::truth::{Kind, Truth};
+use super::truth::{Kind, Origin, Truth};
 use crate::error::{Result, ValidationError};
 use crate::statistics::{Factor, Gram, ReferenceNoise, Split, Winner};
 
@@ -24,8 +24,8 @@ pub struct Standing {
     pub passes: f64,
     /// Error over judged pixels.
     pub judged: Split,
-    /// Error over all pixels.
-    pub whole: Split,
+    /// Error over all pixels; `None` if the reference lacks light in those that are not judged.
+    pub whole: Option<Split>,
 }
 
 /// All methods at one render time.
@@ -79,6 +79,9 @@ pub struct Comparison {
     pub shape: [usize; 3],
     /// Judged pixels, and all.
     pub pixels: [usize; 2],
+    /// Where the reference comes from.
+    #[serde(default)]
+    pub reference: Option<Origin>,
     /// CPU time of the reference \[s\].
     pub reference_cpu_seconds: f64,
     /// NMSE of the reference itself over judged pixels.
@@ -92,7 +95,8 @@ pub struct Comparison {
     /// Kinds of cells within windows, kind by kind.
     #[serde(default)]
     pub kinds_in_windows: Vec<Part>,
-    /// Pixels that see a lamp, which are not judged; `None` if there are none.
+    /// Pixels that see a lamp, which are not judged; `None` if there are none, or the reference lacks
+    /// light there.
     #[serde(default)]
     pub lamps: Option<Part>,
     /// Single bins.
@@ -134,7 +138,8 @@ impl Comparison {
                 let products = Products::of(&cubes, truth)?;
                 drop(cubes);
                 let judged = split(&Products::over(&products.frames, bins.clone()), &noise)?;
-                let whole = split(&products.whole(), &noise_whole)?;
+                let whole = truth.sees_all.then(|| split(&products.whole(), &noise_whole));
+                let whole = whole.transpose()?;
                 let (spent, passes) = mean_spent(runs, reading);
                 methods.push(Standing { spent, passes, judged, whole });
                 last.push(products);
@@ -151,6 +156,7 @@ impl Comparison {
             replicates: runs.iter().map(Vec::len).min().unwrap_or(0),
             shape: [truth.width, truth.height, truth.bins],
             pixels: [truth.judged.iter().filter(|&&judged| judged).count(), truth.pixels()],
+            reference: truth.origin.clone(),
             reference_cpu_seconds: truth.cpu_seconds,
             reference_nmse: noise.variance / noise.signal(),
             windows: parts.windows(windows),
@@ -214,14 +220,17 @@ fn mean_spent(runs: &[Replicate], reading: usize) -> (Spent, f64) {
 }
 
 fn at_time(seconds: f64, methods: Vec<Standing>) -> AtTime {
-    let factor = |of: fn(&Standing) -> &Split, clock: fn(&Spent) -> f64| match methods.as_slice() {
-        [a, b, ..] => of_splits(of(a), of(b)).map(|f| f.scaled(clock(&a.spent) / clock(&b.spent))),
+    let factor = |of: fn(&Standing) -> Option<&Split>, clock: fn(&Spent) -> f64| match &methods[..]
+    {
+        [a, b, ..] => {
+            of_splits(of(a)?, of(b)?).map(|f| f.scaled(clock(&a.spent) / clock(&b.spent)))
+        }
         _ => None,
     };
     let factors = (
-        factor(|standing| &standing.judged, |spent| spent.cpu_seconds),
-        factor(|standing| &standing.whole, |spent| spent.cpu_seconds),
-        factor(|standing| &standing.judged, |spent| spent.wall_seconds),
+        factor(|standing| Some(&standing.judged), |spent| spent.cpu_seconds),
+        factor(|standing| standing.whole.as_ref(), |spent| spent.cpu_seconds),
+        factor(|standing| Some(&standing.judged), |spent| spent.wall_seconds),
     );
     let (factor, factor_whole, factor_wall) = factors;
     AtTime { seconds, methods, factor, factor_whole, factor_wall }
@@ -314,7 +323,7 @@ impl Parts<'_> {
     }
 
     fn lamps(&self, signal: f64) -> Option<Part> {
-        if self.truth.judged.iter().all(|&judged| judged) {
+        if !self.truth.sees_all || self.truth.judged.iter().all(|&judged| judged) {
             return None;
         }
         let noise = self.truth.noise_of_others();

@@ -33,12 +33,16 @@ const DIRECT: f64 = 0.25;
 
 /// Where the reference comes from.
 pub enum Judge {
-    /// It is rendered by path tracing, in batches, and kept.
+    /// It is rendered in batches, and kept.
     Rendered {
+        /// By whom.
+        referee: Referee,
         /// Its file.
         path: PathBuf,
         /// Wall time.
         time: Duration,
+        /// Whether one that other sources made goes on; else it is made anew.
+        any_commit: bool,
     },
     /// It ships with the scene.
     Shipped(PathBuf),
@@ -58,6 +62,8 @@ pub struct Contest<'a> {
     pub seed: u64,
     /// Commit of the sources.
     pub commit: &'a str,
+    /// The command that is carried out.
+    pub command: &'a str,
     /// What errors are measured from.
     pub judge: Judge,
     /// Windows of time lie between these \[m\].
@@ -123,10 +129,11 @@ impl Contest<'_> {
 
     fn truth(&self, watch: &mut Watch<'_>) -> Result<Truth> {
         match &self.judge {
-            Judge::Rendered { path, time } => {
+            Judge::Rendered { referee, path, time, any_commit } => {
                 let seed = self.seed ^ 0x5eed_0000;
                 let reference =
-                    LongRender::reference(self.loaded, Referee::Path, *time, seed, self.commit);
+                    LongRender::reference(self.loaded, *referee, *time, seed, self.commit);
+                let reference = LongRender { own: !any_commit, command: self.command, ..reference };
                 Ok(Truth::of_long(reference.obtain(path, watch)?))
             }
             Judge::Shipped(path) => {

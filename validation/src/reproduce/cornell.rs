@@ -17,6 +17,7 @@ use super::contest::{self, Contest, Contested, Judge};
 use super::race::first_with_variance;
 use super::{Options, SECONDS_PER_CELL, clear, folder, load, write_json};
 use crate::error::Result;
+use crate::judged::Referee;
 use crate::suite::Circumstances;
 use crate::watch::{Step, Watch};
 
@@ -82,7 +83,13 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<CornellResult> {
         replicates: options.replicates,
         seed: options.circumstances.seed,
         commit: &options.circumstances.commit,
-        judge: Judge::Rendered { path: reference.clone(), time: options.reference_time },
+        command: &options.command,
+        judge: Judge::Rendered {
+            referee: Referee::Path,
+            path: reference.clone(),
+            time: options.reference_time,
+            any_commit: options.old_references,
+        },
         windows: &WINDOWS,
         folder: out.join("replicates"),
     };
@@ -131,6 +138,7 @@ fn precise(options: &Options, out: &Path, watch: &mut Watch<'_>) -> Result<Compa
         replicates: options.replicates,
         seed: options.circumstances.seed,
         commit: &options.circumstances.commit,
+        command: &options.command,
         judge: Judge::Shipped(data.join("references").join(format!("{NAME}.npz"))),
         windows: &WINDOWS,
         folder: out.join(PRECISE_FOLDER),

@@ -4,16 +4,17 @@
 //!   running sum. Captions name what geometry says arrives in a frame ([`room`]).
 //! * The delay behind the glass ball, against its exact optical path length ([`delay`]).
 //! * Caustics: path tracing, light tracing and progressive beams on the twin with a tiny area lamp,
-//!   region by region; and what path tracing misses of the point lamp ([`caustics`]).
+//!   region by region, and through a narrow camera; and what path tracing misses of the point lamp
+//!   ([`caustics`]).
 //! * Path tracing and beams at equal time on the twin.
 
 pub mod caustics;
+mod close_up;
 pub mod delay;
 mod pages;
 pub mod room;
 
 use std::path::Path;
-use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use tpb_beams::BeamOptions;
@@ -25,10 +26,12 @@ use super::contest::{self, Contest, Judge};
 use super::race::{Race, Spent};
 use super::{Options, SECONDS_PER_CELL, clear, folder, write_json};
 use crate::error::{Result, ValidationError};
+use crate::judged::Referee;
 use crate::measure::{Estimator, layout};
 use crate::suite::Circumstances;
 use crate::watch::{Step, Watch};
 use caustics::{Caustics, CausticsPlan};
+use close_up::CloseUp;
 use delay::Delay;
 use room::{Event, Room};
 
@@ -36,20 +39,24 @@ use room::{Event, Room};
 pub const NAME: &str = "mirrors";
 /// The twin with a tiny area lamp.
 pub const TWIN: &str = "mirrors-area";
-/// Times of the sequence, of a caustic comparison of the twin and of the point lamp for each method,
-/// of a run at equal time, and of its reference, as parts of a run's time at picture quality.
+/// Times of the sequence, of a run at equal time, and of its reference, as parts of a run's time at
+/// picture quality.
 const SEQUENCE: f64 = 3.0;
-const CAUSTICS: f64 = 1.0;
-const CAUSTICS_POINT: f64 = 0.5;
 const RACE: f64 = 0.2;
 const REFERENCE: f64 = 3.0;
-/// Methods of a caustic comparison: path, light, beams, and beams once more.
-const CAUSTIC_RENDERS: f64 = 4.0;
+/// Likewise of the renders of a caustic comparison: path, light, and beams, who render twice. Of the
+/// whole room path tracing resolves little, however long; close up it is what limits the bounds.
+const CAUSTICS: [f64; 3] = [0.25, 0.75, 0.75];
+const CAUSTICS_CLOSE: [f64; 3] = [1.0, 0.25, 0.25];
+const CAUSTICS_POINT: [f64; 3] = [0.25, 0.5, 0.5];
+/// Narrow cameras.
+const CLOSE_UPS: f64 = 2.0;
 /// What is done, in order, and about how long the delay takes \[s\].
 const DELAY_STEP: (&str, f64) = ("mirrors: the delay behind the ball", 5.0);
 const TWIN_STEP: &str = "mirrors-area: caustics by three methods";
+const CLOSE_STEP: &str = "mirrors-area: the caustics close up, by three methods";
 const POINT_STEP: &str = "mirrors: caustics of the point lamp";
-const RACE_STEP: &str = "mirrors-area: path and beams at equal time; reference";
+const RACE_STEP: &str = "mirrors-area: path and beams at equal time; reference by light tracing";
 const SEQUENCE_STEP: &str = "mirrors: the sequence, by photon beams";
 const PAGES_STEP: &str = "mirrors: pictures and pages";
 /// Film of the comparisons: pixels on a side, bins over the scene's window.
@@ -75,6 +82,9 @@ pub struct MirrorsResult {
     pub delays: Vec<Delay>,
     /// Caustics of the twin.
     pub twin: Caustics,
+    /// Caustics of the twin through a narrow camera.
+    #[serde(default)]
+    pub close: Vec<Caustics>,
     /// Caustics of the point lamp.
     pub point: Caustics,
     /// Path and beams at equal time on the twin.
@@ -90,12 +100,18 @@ pub fn steps(options: &Options) -> Result<Vec<Step>> {
     let race = contest::seconds(options.time.mul_f64(RACE), options.replicates);
     Ok(vec![
         Step::new(DELAY_STEP.0, DELAY_STEP.1),
-        Step::new(TWIN_STEP, CAUSTIC_RENDERS * CAUSTICS * time),
-        Step::new(POINT_STEP, CAUSTIC_RENDERS * CAUSTICS_POINT * time),
+        Step::new(TWIN_STEP, caustic_renders(CAUSTICS) * time),
+        Step::new(CLOSE_STEP, CLOSE_UPS * caustic_renders(CAUSTICS_CLOSE) * time),
+        Step::new(POINT_STEP, caustic_renders(CAUSTICS_POINT) * time),
         Step::new(RACE_STEP, race + REFERENCE * time),
         Step::new(SEQUENCE_STEP, SEQUENCE * time),
         Step::new(PAGES_STEP, options.cells(NAME)? * SECONDS_PER_CELL),
     ])
+}
+
+/// Parts of time of the four renders of a caustic comparison.
+fn caustic_renders([path, light, beams]: [f64; 3]) -> f64 {
+    path + light + 2.0 * beams
 }
 
 /// Renders, measures, and writes `mirrors/` below the output folder. Each step is told.
@@ -113,12 +129,19 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<MirrorsResult> {
     write_json(&out.join("delay.json"), &delays)?;
     watch.begin(TWIN_STEP)?;
     let small = small(options);
-    let (twin, arrays) = caustics(&small, TWIN, &room, CAUSTICS, watch)?;
+    let (twin, arrays) = caustics(&small, TWIN, &room, CAUSTICS, None, watch)?;
     write_json(&out.join("caustics-area.json"), &twin)?;
     let about_caustics = pages::caustics_viewer(&out, &small, &twin, &arrays)?;
     drop(arrays);
+    watch.begin(CLOSE_STEP)?;
+    let narrow = narrow(&small);
+    let mut close = Vec::new();
+    for close_up in CloseUp::all(&room) {
+        close.push(caustics(&narrow, TWIN, &room, CAUSTICS_CLOSE, Some(&close_up), watch)?.0);
+    }
+    write_json(&out.join("caustics-close.json"), &close)?;
     watch.begin(POINT_STEP)?;
-    let (point, _) = caustics(&small, NAME, &room, CAUSTICS_POINT, watch)?;
+    let (point, _) = caustics(&small, NAME, &room, CAUSTICS_POINT, None, watch)?;
     write_json(&out.join("caustics-point.json"), &point)?;
     watch.begin(RACE_STEP)?;
     let equal_time = equal_time(&small, &out, watch)?;
@@ -136,6 +159,7 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<MirrorsResult> {
         events: room.events(&loaded.scene, &arrays),
         delays,
         twin,
+        close,
         point,
         equal_time,
     };
@@ -177,23 +201,32 @@ fn small(options: &Options) -> Options {
     }
 }
 
+/// The same with the film of close-ups.
+fn narrow(small: &Options) -> Options {
+    let pixels = small.pixels.map_or(close_up::PIXELS, |pixels| pixels.min(close_up::PIXELS));
+    Options { pixels: Some(pixels), ..small.clone() }
+}
+
 fn caustics(
     options: &Options,
     scene: &str,
     room: &Room,
-    part: f64,
+    parts: [f64; 3],
+    close_up: Option<&CloseUp>,
     watch: &mut Watch<'_>,
 ) -> Result<(Caustics, Vec<Arrays>)> {
-    let loaded = options.load(scene, &[])?;
-    let time: Duration = options.time.mul_f64(part);
+    let changes = close_up.map(|close_up| close_up.changes(room.eye));
+    let changes: Vec<&str> = changes.iter().flatten().map(String::as_str).collect();
+    let loaded = options.load(scene, &changes)?;
     let plan = CausticsPlan {
         name: scene,
         loaded: &loaded,
         room,
-        time,
+        times: parts.map(|part| options.time.mul_f64(part)),
         seed: options.circumstances.seed,
         commit: &options.circumstances.commit,
         folder: &options.out.join(NAME).join(CAUSTICS_FOLDER),
+        close_up,
     };
     plan.run(watch)
 }
@@ -207,9 +240,12 @@ fn equal_time(options: &Options, out: &Path, watch: &mut Watch<'_>) -> Result<Co
         replicates: options.replicates,
         seed: options.circumstances.seed,
         commit: &options.circumstances.commit,
+        command: &options.command,
         judge: Judge::Rendered {
+            referee: Referee::Light,
             path: options.reference(out),
             time: options.time.mul_f64(REFERENCE),
+            any_commit: options.old_references,
         },
         windows: &WINDOWS,
         folder: out.join(RACE_FOLDER),

@@ -5,8 +5,9 @@
 //! * [`mirrors`]: figure 3. Delta and continuous emission from one render, the delay behind the glass
 //!   ball against its exact optical path length, and caustics by three methods.
 //!
-//! Everything that takes long is kept as it comes: references for good, replicates until what they
-//! tell is written. An interrupted run goes on where it was.
+//! Everything that takes long is kept as it comes: references for later runs of the same commit,
+//! replicates until what they tell is written. An interrupted run goes on where it was. Trials, with a
+//! smaller film or less time, have folders of their own ([`Options::apart`]).
 //!
 //! | module | subject |
 //! | --- | --- |
@@ -49,6 +50,9 @@ use tpb_scene::load::{LoadedScene, Override, load_scene};
 use crate::error::{Result, ValidationError};
 use crate::suite::Circumstances;
 
+/// Time of a run, below which it is a trial.
+pub const FULL_TIME: Duration = Duration::from_secs(40);
+
 /// What a reproduction is told.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -58,6 +62,8 @@ pub struct Options {
     pub reference_time: Duration,
     /// Replicates of each method, at least 3.
     pub replicates: u64,
+    /// Whether references that sources of other commits made are used, and said to be.
+    pub old_references: bool,
     /// Pixels along an edge of the film, if not the scene's own: for trials.
     pub pixels: Option<usize>,
     /// Time bins over the scene's window, likewise.
@@ -76,6 +82,27 @@ impl Options {
     /// Whether the film is not the scene's own.
     pub fn is_trial(&self) -> bool {
         self.pixels.is_some() || self.bins.is_some()
+    }
+
+    /// What makes it a trial: a film that is not the scene's own, or less than [`FULL_TIME`]; a name
+    /// for a folder. `None` if it is none.
+    pub fn trial(&self) -> Option<String> {
+        let time = (self.time < FULL_TIME).then(|| format!("{}s", self.time.as_secs_f64()));
+        let parts = [
+            self.pixels.map(|pixels| format!("{pixels}px")),
+            self.bins.map(|bins| format!("{bins}bins")),
+            time,
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        (!parts.is_empty()).then(|| parts.join("-"))
+    }
+
+    /// The same with a folder of its own for a trial, `trials/NAME` below the output folder: it never
+    /// takes the place of a run in full.
+    #[must_use]
+    pub fn apart(self) -> Self {
+        let out = self.trial().map(|name| self.out.join("trials").join(name));
+        Self { out: out.unwrap_or_else(|| self.out.clone()), ..self }
     }
 
     /// A scene with the film of these options and further changes (`path=value`).
@@ -160,4 +187,22 @@ pub(crate) fn clear(path: &Path) -> Result<()> {
 pub(crate) fn bin_of(edges: &[f64], opl: f64) -> usize {
     let above = edges.partition_point(|&edge| edge <= opl + 1e-9);
     above.saturating_sub(1).min(edges.len().saturating_sub(2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn trials_have_folders_of_their_own() {
+        let options = cornell::tests::trial("apart");
+        let out = options.out.clone();
+        let full = Options { time: FULL_TIME, pixels: None, bins: None, ..options.clone() };
+        assert_eq!((full.trial(), full.apart().out), (None, out.clone()));
+        let film = Options { time: FULL_TIME, bins: None, ..options.clone() };
+        assert_eq!(film.clone().apart().out, out.join("trials/12px"));
+        let short = Options { time: Duration::from_secs(2), pixels: None, ..film };
+        assert_eq!(short.clone().apart().out, out.join("trials/2s"));
+        assert_eq!(options.apart().out, out.join("trials/12px-20bins-0.02s"));
+    }
 }

@@ -7,14 +7,19 @@ use tpb_viewer::{Factors, PageReport};
 use super::compare::{Comparison, Part};
 use super::losses::losses;
 use super::page::Page;
+use super::truth::Origin;
 use super::{charts, tables, write_text};
 use crate::error::{Result, ValidationError};
 use crate::statistics::Winner;
 use crate::suite::Circumstances;
 
 /// Tables: by render time, by window of time, by kind of cell, and who wins which bins.
-pub(crate) fn numbers(page: &mut Page, comparison: &Comparison) {
+pub(crate) fn numbers(page: &mut Page, comparison: &Comparison, commit: &str) {
     page.heading("Numbers");
+    if let Some(origin) = &comparison.reference {
+        page.note(&made_by(origin, commit));
+    }
+    page.note(&precision(comparison));
     page.table(
         &format!(
             "By render time, over judged pixels; {} replicates each; reference of {:.0} CPU s, own NMSE {:.1e}",
@@ -44,6 +49,57 @@ pub(crate) fn numbers(page: &mut Page, comparison: &Comparison) {
     }
     lost(page, comparison);
     page.list(&[tables::won(comparison, Winner::First), tables::won(comparison, Winner::Second)]);
+}
+
+/// Where a reference comes from; `commit` is that of the errors.
+fn made_by(origin: &Origin, commit: &str) -> String {
+    let Origin { method, batches, passes, commits, commands } = origin;
+    let commits_text = commits.join(", ");
+    if *batches == 0 {
+        return format!(
+            "The reference ships with the scene: {method}, {passes} passes, by sources of commit \
+             {commits_text}."
+        );
+    }
+    let by = if commands.is_empty() {
+        String::new()
+    } else {
+        format!(", by `{}`", commands.join("`, then `"))
+    };
+    let other = if commits.iter().all(|made| made == commit) {
+        ""
+    } else {
+        ". ATTENTION: these are not the sources of the renders that it judges"
+    };
+    format!(
+        "The reference: {method}, {batches} batches of {passes} passes, by sources of commit \
+         {commits_text}{by}{other}."
+    )
+}
+
+/// What the reference's own noise lets be known, and what not.
+fn precision(comparison: &Comparison) -> String {
+    let own = comparison.reference_nmse;
+    let errors = comparison.whole().methods.iter().map(|method| method.judged.nmse.value);
+    let noisier: Vec<&str> = comparison
+        .methods
+        .iter()
+        .zip(errors)
+        .filter(|&(_, error)| own > error)
+        .map(|(name, _)| name.as_str())
+        .collect();
+    let subtracted = "It is measured from the spread of its batches and subtracted, so that errors \
+                      below are those from the truth; viewers do not subtract it, and judge one \
+                      replicate, channel by channel: their numbers are larger.";
+    if noisier.is_empty() {
+        return format!("The reference's own NMSE is {own:.1e}. {subtracted}");
+    }
+    format!(
+        "The reference's own NMSE is {own:.1e}: it is noisier than what it judges of {}. {subtracted} \
+         Sums over many cells can be judged so, with wider intervals; single cells, dark frames and \
+         pictures cannot: there more grain in the reference says nothing about the methods.",
+        noisier.join(" and ")
+    )
 }
 
 /// Where beams lose, and why; or that nothing such was found.
@@ -163,7 +219,28 @@ pub(crate) fn provenance(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reproduce::testing::arrays;
+    use crate::reproduce::testing::{arrays, comparison};
+
+    #[test]
+    fn a_reference_says_who_made_it_and_how_noisy_it_is() {
+        let origin = |batches, commit: &str| Origin {
+            method: "path".into(),
+            batches,
+            passes: 7,
+            commits: vec![commit.into()],
+            commands: vec!["cargo xtask reproduce all".into()],
+        };
+        let own = made_by(&origin(8, "abc"), "abc");
+        assert!(own.ends_with("of commit abc, by `cargo xtask reproduce all`."), "{own}");
+        let other = made_by(&origin(8, "abc"), "abd");
+        assert!(other.contains("ATTENTION: these are not the sources"), "{other}");
+        assert!(made_by(&origin(0, "abc"), "abd").contains("ships with the scene"));
+        // Errors of 1 against 1e-3, and against 2.
+        let mut comparison = comparison();
+        assert!(!precision(&comparison).contains("noisier"));
+        comparison.reference_nmse = 2.0;
+        assert!(precision(&comparison).contains("noisier than what it judges of path and beams"));
+    }
 
     #[test]
     fn a_viewer_that_had_to_be_reduced_says_so_where_it_is_linked() {

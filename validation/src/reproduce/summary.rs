@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 use super::compare::Comparison;
 use super::cornell::{self, CornellResult};
 use super::losses::losses;
-use super::mirrors::caustics::{BEAMS_LIGHT, Caustics, LIGHT_PATH, LIMIT_LIGHT, MARGIN};
+use super::mirrors::caustics::{BEAMS_LIGHT, Caustics, LIGHT_PATH, LIMIT_LIGHT, MARGIN, THREE};
 use super::mirrors::{self, MirrorsResult};
 use super::page::Page;
-use super::{Options, report, tables, write_json, write_text};
+use super::{Options, tables, write_json, write_text};
 use crate::error::Result;
 use crate::statistics::{Factor, Winner};
 use crate::suite::Circumstances;
@@ -62,18 +62,20 @@ impl Summary {
         Self { cornell: found(out, cornell::NAME), mirrors: found(out, mirrors::NAME) }
     }
 
-    /// The comparisons with their names.
-    fn comparisons(&self) -> Vec<(String, &Comparison)> {
+    /// The comparisons with their names and commits.
+    fn comparisons(&self) -> Vec<(String, &str, &Comparison)> {
         let named = |name: &str, c: &Comparison| {
             format!("{name}, {}x{}x{}", c.shape[0], c.shape[1], c.shape[2])
         };
         let mut list = Vec::new();
         if let Some(cornell) = &self.cornell {
-            list.push((named(cornell::NAME, &cornell.picture), &cornell.picture));
-            list.extend(cornell.precise.iter().map(|c| (named(cornell::NAME, c), c)));
+            let commit = cornell.circumstances.commit.as_str();
+            let all = std::iter::once(&cornell.picture).chain(&cornell.precise);
+            list.extend(all.map(|c| (named(cornell::NAME, c), commit, c)));
         }
         if let Some(mirrors) = &self.mirrors {
-            list.push((named(mirrors::TWIN, &mirrors.equal_time), &mirrors.equal_time));
+            let (commit, c) = (mirrors.circumstances.commit.as_str(), &mirrors.equal_time);
+            list.push((named(mirrors::TWIN, c), commit, c));
         }
         list
     }
@@ -82,16 +84,18 @@ impl Summary {
     pub fn tables(&self) -> Vec<Table> {
         let mut all = vec![self.equal_time(), self.lost()];
         if let Some(mirrors) = &self.mirrors {
+            all.push(close_ups(&mirrors.close));
             all.extend([&mirrors.twin, &mirrors.point].map(caustics));
             all.push(delays(mirrors));
         }
+        all.push(self.origins());
         all.retain(|table| !table.rows.is_empty());
         all
     }
 
     /// A row for each scene and method.
     fn equal_time(&self) -> Table {
-        let rows = |(scene, c): (String, &Comparison)| -> Vec<Vec<String>> {
+        let rows = |(scene, commit, c): (String, &str, &Comparison)| -> Vec<Vec<String>> {
             let whole = c.whole();
             let row = |(index, method): (usize, &String)| {
                 let standing = &whole.methods[index];
@@ -104,22 +108,36 @@ impl Summary {
                 ];
                 let factors = [whole.factor, whole.factor_wall, whole.factor_whole];
                 row.extend(factors.map(|f| if index == 1 { text(f) } else { String::new() }));
+                row.push(reference(c));
+                row.push(commit.to_owned());
                 row
             };
             c.methods.iter().enumerate().map(row).collect()
         };
         Table::new(
-            "Equal time: NMSE over pixels that see no lamp, and how many times less error photon beams \
-             have than path tracing (ratios of NMSE \u{d7} seconds; 95 % intervals)"
+            "Equal time: NMSE over judged pixels (that see no lamp; where the light tracer is the \
+             reference, nor mirrors and glass), and how many times less error photon beams have than \
+             path tracing (ratios of NMSE \u{d7} seconds; 95 % intervals)"
                 .to_owned(),
-            ["scene", "method", "wall s", "CPU s", "NMSE", "by CPU s", "by wall s", "all pixels"],
+            [
+                "scene",
+                "method",
+                "wall s",
+                "CPU s",
+                "NMSE",
+                "by CPU s",
+                "by wall s",
+                "all pixels",
+                "reference",
+                "commit",
+            ],
             self.comparisons().into_iter().flat_map(rows).collect(),
         )
     }
 
     /// A row for each part that beams lose; a row for each scene where they lose none.
     fn lost(&self) -> Table {
-        let rows = |(scene, c): (String, &Comparison)| -> Vec<Vec<String>> {
+        let rows = |(scene, _, c): (String, &str, &Comparison)| -> Vec<Vec<String>> {
             let of_scene = |row: Vec<String>| [vec![scene.clone()], row].concat();
             let rows: Vec<_> = losses(c).into_iter().map(tables::loss).map(of_scene).collect();
             if rows.is_empty() {
@@ -137,6 +155,20 @@ impl Summary {
         )
     }
 
+    /// What made each scene's rows.
+    fn origins(&self) -> Table {
+        let of = |name: &str, c: &Circumstances, command: &str| {
+            [name, &c.commit, &c.machine, &c.flags, command].map(str::to_owned).to_vec()
+        };
+        let cornell = self.cornell.iter().map(|r| of(cornell::NAME, &r.circumstances, &r.command));
+        let mirrors = self.mirrors.iter().map(|r| of(mirrors::NAME, &r.circumstances, &r.command));
+        Table::new(
+            "What made the rows of each scene".to_owned(),
+            ["scene and its twins", "commit", "machine", "flags", "command"],
+            cornell.chain(mirrors).collect(),
+        )
+    }
+
     /// All tables as Markdown.
     pub fn markdown(&self) -> String {
         self.tables().iter().map(Table::markdown).collect::<Vec<_>>().join("\n")
@@ -150,8 +182,15 @@ impl Summary {
         let out = &options.out;
         let tables = self.tables();
         write_json(&out.join("table.json"), &tables)?;
-        write_text(&out.join("table.md"), &self.markdown())?;
+        let trial = options.trial().map(|name| {
+            format!("A trial ({name}): less time or a smaller film than the figures have.")
+        });
+        let heading = trial.as_ref().map_or(String::new(), |trial| format!("{trial}\n\n"));
+        write_text(&out.join("table.md"), &(heading + &self.markdown()))?;
         let mut page = Page::new("Transient photon beams: the evidence, made again");
+        if let Some(trial) = &trial {
+            page.note(trial);
+        }
         for (name, title, there) in [
             (
                 cornell::NAME,
@@ -173,23 +212,56 @@ impl Summary {
             let heads: Vec<&str> = table.heads.iter().map(String::as_str).collect();
             page.table(&table.caption, &heads, &table.rows);
         }
-        for (name, comparison) in self.comparisons() {
+        for (name, _, comparison) in self.comparisons() {
             page.note(&format!("{name}: {}", tables::won(comparison, Winner::First)));
         }
-        // A scene may be of an earlier run.
-        let made = |about: &Circumstances, command: &str| format!("{}: {command}", about.commit);
-        let cornell =
-            self.cornell.as_ref().map(|r| (cornell::NAME, made(&r.circumstances, &r.command)));
-        let mirrors =
-            self.mirrors.as_ref().map(|r| (mirrors::NAME, made(&r.circumstances, &r.command)));
-        let scenes: Vec<_> = cornell.into_iter().chain(mirrors).collect();
-        report::provenance(&mut page, &options.circumstances, &options.command, &scenes);
         page.write(&out.join(PAGE)).map(drop)
     }
 }
 
 fn text(factor: Option<Factor>) -> String {
     factor.map_or("—".to_owned(), |factor| factor.text())
+}
+
+/// Who referees a comparison, and by which sources.
+fn reference(comparison: &Comparison) -> String {
+    comparison.reference.as_ref().map_or("not known".to_owned(), |origin| {
+        let ships = if origin.batches == 0 { ", ships" } else { "" };
+        format!("{}, {}{ships}", origin.method, origin.commits.join(", "))
+    })
+}
+
+/// Whether three methods agree on the caustics, close up: a row for each region.
+fn close_ups(close: &[Caustics]) -> Table {
+    let row = |region: &mirrors::caustics::RegionResult| {
+        let mut row = vec![region.label.clone()];
+        let pair = |&pair: &usize| {
+            region.differences.get(pair).map_or("\u{2014}".to_owned(), tables::difference)
+        };
+        row.extend(THREE.iter().map(pair));
+        row.push(match region.bound(&THREE) {
+            Some(bound) if bound <= MARGIN => format!("agree within \u{b1}{:.1} %", 100.0 * bound),
+            Some(bound) => format!("open: \u{b1}{:.1} %", 100.0 * bound),
+            None => "\u{2014}".to_owned(),
+        });
+        row
+    };
+    Table::new(
+        format!(
+            "Caustics of {} close up: relative differences of means, 95 % intervals, and whether all \
+             three methods lie within \u{b1}{:.0} % of each other",
+            mirrors::TWIN,
+            100.0 * MARGIN
+        ),
+        [
+            "region",
+            "light \u{2212} path",
+            "beams \u{2212} path",
+            "beams \u{2212} light",
+            "path, light, beams",
+        ],
+        close.iter().flat_map(|found| &found.regions).map(row).collect(),
+    )
 }
 
 /// A row for each region.

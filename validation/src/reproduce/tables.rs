@@ -52,7 +52,7 @@ pub(crate) fn by_time(comparison: &Comparison) -> Vec<Vec<String>> {
                 interval(&m.judged.nmse),
                 interval(&m.judged.variance),
                 interval(&m.judged.squared_bias),
-                interval(&m.whole.nmse),
+                m.whole.as_ref().map_or("—".to_owned(), |whole| interval(&whole.nmse)),
             ]);
         }
         rows.push(factor_row(time));

@@ -45,7 +45,7 @@ pub(crate) fn comparison() -> Comparison {
         spent: Spent { wall_seconds: 1.0, cpu_seconds: 2.0, passes },
         passes: passes as f64,
         judged: split.clone(),
-        whole: split.clone(),
+        whole: Some(split.clone()),
     };
     let whole = AtTime {
         seconds: 1.0,
@@ -60,6 +60,7 @@ pub(crate) fn comparison() -> Comparison {
         replicates: 5,
         shape: [4, 4, 8],
         pixels: [12, 16],
+        reference: None,
         reference_cpu_seconds: 10.0,
         reference_nmse: 1e-3,
         times: vec![whole],

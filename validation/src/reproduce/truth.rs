@@ -3,6 +3,8 @@
 
 use std::ops::Range;
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::{Result, ValidationError};
 use crate::long_render::LongMean;
 use crate::reference_cube::ReferenceCube;
@@ -37,11 +39,29 @@ impl Kind {
     }
 }
 
+/// Where a reference comes from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Origin {
+    /// The method.
+    pub method: String,
+    /// Batches of so many passes each; 0 batches if it ships.
+    pub batches: u64,
+    /// Passes of a batch.
+    pub passes: u64,
+    /// Commits of the sources that made it.
+    pub commits: Vec<String>,
+    /// Commands that made it; empty if they are not known.
+    pub commands: Vec<String>,
+}
+
 /// Share of direct light that makes a cell [`Kind::Pure`], and [`Kind::Direct`].
 const PURE: f32 = 0.9;
 const HALF: f32 = 0.5;
 /// Part of a pixel's energy by which its front has passed.
 const FRONT: f64 = 0.05;
+
+/// Name of the method that does not see what stands in mirrors and glass.
+const LIGHT: &str = "light";
 
 /// Variances of the cells.
 enum Variance {
@@ -71,6 +91,11 @@ pub struct Truth {
     pub window_freedom: f64,
     /// CPU time of the reference \[s\].
     pub cpu_seconds: f64,
+    /// Where it comes from.
+    pub origin: Option<Origin>,
+    /// Whether it has all light of pixels that are not judged, too: the light tracer's lacks what
+    /// stands in mirrors and glass.
+    pub sees_all: bool,
     /// [`Kind`] of each cell; empty until [`Truth::sort_cells`].
     kinds: Vec<Kind>,
     variance: Variance,
@@ -92,6 +117,14 @@ impl Truth {
             window_variance,
             window_freedom: made.batches.saturating_sub(1) as f64,
             cpu_seconds: made.cpu_seconds,
+            sees_all: made.method != LIGHT,
+            origin: Some(Origin {
+                method: made.method,
+                batches: made.batches,
+                passes: made.passes,
+                commits: made.commits,
+                commands: made.commands,
+            }),
             kinds: Vec::new(),
             variance: Variance::Cells(mean_variance),
         }
@@ -115,6 +148,14 @@ impl Truth {
             window_variance: Vec::new(),
             window_freedom: 0.0,
             cpu_seconds: reference.provenance.cpu_seconds.unwrap_or(0.0),
+            sees_all: reference.provenance.method != LIGHT,
+            origin: Some(Origin {
+                method: reference.provenance.method.clone(),
+                batches: 0,
+                passes: reference.provenance.passes,
+                commits: vec![reference.provenance.commit.clone()],
+                commands: Vec::new(),
+            }),
             kinds: Vec::new(),
             variance: Variance::Separable {
                 pixel: reference.variance_pixel.clone(),
@@ -269,6 +310,8 @@ impl Truth {
             window_variance: Vec::new(),
             window_freedom: 7.0,
             cpu_seconds: 1.0,
+            origin: None,
+            sees_all: true,
             kinds: Vec::new(),
             variance: Variance::Cells(vec![variance; values.len()]),
             values,

@@ -41,16 +41,16 @@ pub(super) fn write(out: &Path, result: &CornellResult, shown: &Shown<'_>) -> Re
     let about = viewer(out, result, shown, &arrays)?;
     drop(arrays);
     page.link_with("viewer.html", "All frames, pixel by pixel: the comparison viewer", &about);
-    report::numbers(&mut page, comparison);
+    report::numbers(&mut page, comparison, &result.circumstances.commit);
     report::curves(&mut page, out, "Cornell blocks", comparison, "")?;
     maps(&mut page, out, shown)?;
     if let Some(precise) = &result.precise {
         page.heading("The same at 64x64 pixels and 200 bins, against the shipped reference");
         page.text(&format!(
-            "That reference is less noisy (own NMSE {:.1e}), so that errors are known better.",
-            precise.reference_nmse
+            "The own NMSE of that reference is {:.1e}, against {:.1e} above: errors are known better.",
+            precise.reference_nmse, comparison.reference_nmse
         ));
-        report::numbers(&mut page, precise);
+        report::numbers(&mut page, precise, &result.circumstances.commit);
         report::curves(&mut page, out, "Cornell blocks, 64x64x200", precise, "-precise")?;
     }
     report::provenance(

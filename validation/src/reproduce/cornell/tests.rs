@@ -20,6 +20,7 @@ pub(crate) fn trial(name: &str) -> Options {
         time: Duration::from_millis(20),
         reference_time: Duration::from_millis(100),
         replicates: 3,
+        old_references: false,
         pixels: Some(12),
         bins: Some(20),
         scenes,
@@ -48,7 +49,8 @@ fn all_files_are_made_and_agree_with_each_other() {
     for split in c.whole().methods.iter().map(|m| &m.judged) {
         let sum = split.variance.value + split.squared_bias.value;
         assert!((sum / split.nmse.value - 1.0).abs() < 1e-9);
-        assert!(split.nmse.value > 0.0);
+        // The reference's noise is subtracted: of renders this short, what is left may be below 0.
+        assert!(split.nmse.value.is_finite() && split.nmse.interval[1] > 0.0);
     }
     for parts in [&c.frames, &c.kinds] {
         let shares: f64 = parts.iter().map(|part| part.share).sum();

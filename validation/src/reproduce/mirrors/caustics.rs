@@ -16,10 +16,16 @@
 //!
 //! > blur ≈ 4/3 (B(R) − B(R/2)),   B(0) ≈ (4 B(R/2) − B(R))/3   (Richardson 1911)
 //!
+//! **Rare finds.** Path tracing finds the lamp in mirrors and through glass by chance. Light that each
+//! of N camera paths finds with a probability below ln(1/δ)/N was missed by all with a probability above
+//! δ, and no batch shows it; a find adds at most the radiance L of the brightest emitter, since
+//! throughput is at most 1. Intervals of differences from path tracing therefore hold means from what
+//! it found to L ln(1/δ)/N more, with δ = 2.5 %.
+//!
 //! What is left of B(0) against the unbiased methods is what blur ∝ R² does not explain: blur ∝ R, of
 //! which a third is left, or a defect.
 
-mod regions;
+pub(super) mod regions;
 
 use std::path::Path;
 use std::time::Duration;
@@ -27,9 +33,10 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 use tpb_beams::{BeamOptions, Settings};
 use tpb_film::Arrays;
-use tpb_scene::Plan;
 use tpb_scene::load::LoadedScene;
+use tpb_scene::{EmitterKind, Plan, Scene};
 
+use super::close_up::CloseUp;
 use super::room::Room;
 use crate::cube::Cube;
 use crate::error::{Result, ValidationError};
@@ -52,13 +59,24 @@ const METHODS: [&str; 4] = ["path", "light", "beams", "beams, radii halved"];
 /// What B(0) is called.
 const EXTRAPOLATED: &str = "beams, R \u{2192} 0";
 /// Who is compared, the second being what differences are relative to; 4 is B(0).
-const PAIRS: [(usize, usize); 5] = [(1, 0), (2, 0), (2, 1), (3, 1), (4, 1)];
-/// Where [`RegionResult::differences`] compare light with path, beams with light, B(0) with light.
+const PAIRS: [(usize, usize); 6] = [(1, 0), (2, 0), (2, 1), (3, 1), (4, 1), (4, 0)];
+/// Where [`RegionResult::differences`] compare light with path, beams with path, beams with light,
+/// B(0) with light, B(0) with path.
 pub const LIGHT_PATH: usize = 0;
+/// See [`LIGHT_PATH`].
+pub const BEAMS_PATH: usize = 1;
 /// See [`LIGHT_PATH`].
 pub const BEAMS_LIGHT: usize = 2;
 /// See [`LIGHT_PATH`].
 pub const LIMIT_LIGHT: usize = 4;
+/// See [`LIGHT_PATH`].
+pub const LIMIT_PATH: usize = 5;
+/// The differences among path, light and beams.
+pub const THREE: [usize; 3] = [LIGHT_PATH, BEAMS_PATH, BEAMS_LIGHT];
+/// Those among path, light and B(0).
+pub const THREE_LIMIT: [usize; 3] = [LIGHT_PATH, LIMIT_PATH, LIMIT_LIGHT];
+/// δ of light that all paths missed: what an interval leaves out on one side.
+const UNSEEN: f64 = 0.5 * (1.0 - CONFIDENCE);
 
 /// What to compare.
 pub struct CausticsPlan<'a> {
@@ -68,14 +86,16 @@ pub struct CausticsPlan<'a> {
     pub loaded: &'a LoadedScene,
     /// Its geometry.
     pub room: &'a Room,
-    /// Wall time of each method.
-    pub time: Duration,
+    /// Wall time of path, light and beams; the last render takes as many passes as beams.
+    pub times: [Duration; 3],
     /// Seed of the first.
     pub seed: u64,
     /// Commit of the sources.
     pub commit: &'a str,
     /// Where renders are kept meanwhile.
     pub folder: &'a Path,
+    /// What the scene's camera was turned to, if it was.
+    pub(super) close_up: Option<&'a CloseUp>,
 }
 
 /// A method's mean over a region.
@@ -121,9 +141,13 @@ pub struct RegionResult {
     pub bins: [usize; 2],
     /// By each method.
     pub levels: Vec<Level>,
+    /// What path tracing may have missed in all its paths, over its mean; `None` if there is no bound.
+    #[serde(default)]
+    pub unseen: Option<f64>,
     /// What blur adds to beams, 4/3 (B(R) − B(R/2)), over the light tracer's level: 95 % interval.
     pub blur: Option<[f64; 2]>,
-    /// Light and path, beams and path, beams and light, halved radii and light, R → 0 and light.
+    /// Light and path, beams and path, beams and light, halved radii and light, R → 0 and light, and
+    /// path.
     pub differences: Vec<Difference>,
 }
 
@@ -153,7 +177,10 @@ impl CausticsPlan<'_> {
     pub fn run(&self, watch: &mut Watch<'_>) -> Result<(Caustics, Vec<Arrays>)> {
         let scene = &self.loaded.scene;
         let judged = Referee::Light.judged_of(scene)?;
-        let regions = regions(self.room, scene, &judged)?;
+        let regions = match self.close_up {
+            Some(close_up) => close_up.regions(scene, &judged)?,
+            None => regions(self.room, scene, &judged)?,
+        };
         let mut made: Vec<LongMean> = Vec::new();
         for (index, name) in METHODS.into_iter().enumerate() {
             let estimator = match Estimator::of_name(name) {
@@ -164,13 +191,15 @@ impl CausticsPlan<'_> {
             made.push(mean);
         }
         let of_regions = regions.iter().enumerate();
+        let brightest = brightest(scene);
+        let of_region = |(index, region)| result(region, index, &made, brightest);
         let found = Caustics {
             scene: self.name.to_owned(),
             methods: METHODS.map(str::to_owned).to_vec(),
             cpu_seconds: made.iter().map(|mean| mean.made.cpu_seconds).collect(),
             passes: made.iter().map(|mean| mean.made.batches * mean.made.passes).collect(),
             batches: made.iter().map(|mean| mean.made.batches).min().unwrap_or(0),
-            regions: of_regions.map(|(index, region)| result(region, index, &made)).collect(),
+            regions: of_regions.map(of_region).collect(),
         };
         Ok((found, made.into_iter().map(|mean| mean.arrays).collect()))
     }
@@ -195,17 +224,19 @@ impl CausticsPlan<'_> {
             estimator,
             referee: Referee::Light,
             judged: Some(judged),
-            time: self.time,
+            time: self.times[index.min(self.times.len() - 1)],
             batches: BATCHES,
             fewest: like.map_or(u64::from(BATCHES), |made| made.batches),
             passes: like.map(|made| made.passes),
             seed: self.seed * 10 + index as u64,
             commit: self.commit,
+            command: "",
             own: true,
             values: &values,
         };
         super::super::folder(self.folder)?;
-        order.obtain(&self.folder.join(format!("{}-{index}.npz", self.name)), watch)
+        let key = self.close_up.map_or("room", |close_up| close_up.key);
+        order.obtain(&self.folder.join(format!("{}-{key}-{index}.npz", self.name)), watch)
     }
 
     /// Beams with half their radii.
@@ -233,7 +264,33 @@ impl Caustics {
     }
 }
 
-fn result(region: &Region, index: usize, made: &[LongMean]) -> RegionResult {
+impl RegionResult {
+    /// The largest difference among some pairs that their 95 % intervals allow; `None` if one of them
+    /// is not known.
+    pub fn bound(&self, pairs: &[usize]) -> Option<f64> {
+        let ends = pairs.iter().map(|&pair| {
+            let [low, high] = self.differences.get(pair)?.interval?;
+            Some(low.abs().max(high.abs()))
+        });
+        ends.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+    }
+}
+
+/// Radiance of the brightest emitter, mean over channels; `None` if one of them has no area.
+fn brightest(scene: &Scene) -> Option<f64> {
+    let radiances = scene.emitters.iter().map(|emitter| match &emitter.kind {
+        EmitterKind::Area { radiance, .. } => Some(radiance.0.iter().sum::<f64>() / 3.0),
+        _ => None,
+    });
+    radiances.collect::<Option<Vec<f64>>>()?.into_iter().reduce(f64::max)
+}
+
+fn result(
+    region: &Region,
+    index: usize,
+    made: &[LongMean],
+    brightest: Option<f64>,
+) -> RegionResult {
     let batches = |mean: &LongMean| -> Vec<f64> {
         mean.made.values.iter().map(|values| values[index]).collect()
     };
@@ -246,18 +303,41 @@ fn result(region: &Region, index: usize, made: &[LongMean]) -> RegionResult {
     let limit = combined(4.0 / 3.0, half, -1.0 / 3.0, whole);
     let light = summaries[1];
     summaries.push(limit);
+    let share = region.pixels.len() as f64 / made[0].judged.len().max(1) as f64;
+    let paths = share * made[0].made.camera_paths as f64;
+    let unseen = brightest.map(|radiance| unseen(radiance, paths) / summaries[0].mean);
     let name = |index: usize| METHODS.get(index).copied().unwrap_or(EXTRAPOLATED);
     let compare = |&(a, b): &(usize, usize)| {
         let of = format!("{} \u{2212} {}", name(a), name(b));
-        difference(of, &summaries[a], &summaries[b], freedom)
+        let found = difference(of, &summaries[a], &summaries[b], freedom);
+        // The first method is path tracing.
+        if b == 0 { found.with_unseen(unseen.unwrap_or(0.0)) } else { found }
     };
     RegionResult {
         label: region.label.clone(),
         pixels: region.pixels.len(),
         bins: [region.bins.start, region.bins.end],
         levels,
+        unseen: unseen.filter(|unseen| unseen.is_finite()),
         blur: ratio(&blur, &light, freedom),
         differences: PAIRS.iter().map(compare).collect(),
+    }
+}
+
+/// Mean radiance that so many paths may all have missed, if one that finds it adds at most `radiance`.
+fn unseen(radiance: f64, paths: f64) -> f64 {
+    radiance * -UNSEEN.ln() / paths
+}
+
+impl Difference {
+    /// The same if the mean of the second may be larger by up to `more` of it.
+    fn with_unseen(self, more: f64) -> Self {
+        let Some([low, high]) = self.interval.filter(|_| more.is_finite()) else {
+            return Self { interval: None, verdict: Verdict::Open, ..self };
+        };
+        let interval = [low, high].map(|end| 1.0 + end);
+        let interval = [interval[0].min(interval[0] / (1.0 + more)) - 1.0, interval[1] - 1.0];
+        Self { interval: Some(interval), verdict: verdict(interval), ..self }
     }
 }
 
@@ -293,40 +373,4 @@ fn verdict([low, high]: [f64; 2]) -> Verdict {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn verdicts_need_the_whole_interval() {
-        assert_eq!(verdict([-0.02, 0.029]), Verdict::Agree);
-        assert_eq!(verdict([-0.02, 0.031]), Verdict::Open);
-        assert_eq!(verdict([0.031, 0.5]), Verdict::Differ);
-        assert_eq!(verdict([-0.5, -0.04]), Verdict::Differ);
-    }
-
-    #[test]
-    fn differences_are_relative_to_the_second() {
-        let summary = |mean, standard_error| Summary { mean, standard_error };
-        let named = || "beams \u{2212} light".to_owned();
-        let d = difference(named(), &summary(1.02, 0.003), &summary(1.0, 0.004), 15.0);
-        let [low, high] = d.interval.unwrap();
-        let middle = 0.5 * (low + high);
-        assert!((middle - 0.02).abs() < 1e-12 && d.verdict == Verdict::Open, "{d:?}");
-        // t of 15 degrees of freedom at 95 % is 2.131; √(0.003² + (1.02·0.004)²) = 0.005064.
-        assert!((high - middle - 2.1314 * 0.005_064).abs() < 1e-5);
-        let dark = difference(named(), &summary(1.0, 0.1), &summary(0.0, 0.0), 15.0);
-        assert_eq!((dark.interval, dark.verdict), (None, Verdict::Open));
-    }
-
-    #[test]
-    fn half_the_radius_tells_the_blur_and_the_mean_without_it() {
-        // B(R) = 1 − 0.08 R² at R = 1 and R = 1/2.
-        let summary = |mean, standard_error| Summary { mean, standard_error };
-        let (whole, half) = (summary(0.92, 0.003), summary(0.98, 0.004));
-        let limit = combined(4.0 / 3.0, &half, -1.0 / 3.0, &whole);
-        assert!((limit.mean - 1.0).abs() < 1e-12);
-        assert!((limit.standard_error - (16.0 * 16.0 + 9.0_f64).sqrt() / 3e3).abs() < 1e-9);
-        let blur = combined(4.0 / 3.0, &whole, -4.0 / 3.0, &half);
-        assert!((blur.mean + 0.08).abs() < 1e-12);
-    }
-}
+mod tests;

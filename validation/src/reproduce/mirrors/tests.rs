@@ -4,6 +4,7 @@ use std::fs;
 
 use super::super::cornell::tests::trial;
 use super::*;
+use crate::judged::Referee;
 
 #[test]
 fn the_room_is_as_the_scene_says_and_the_exact_delay_is_that_of_the_glass() {
@@ -23,6 +24,30 @@ fn the_room_is_as_the_scene_says_and_the_exact_delay_is_that_of_the_glass() {
 }
 
 #[test]
+fn close_ups_look_at_the_caustics_and_at_nothing_smooth() {
+    let options = trial("close");
+    let room = Room::of(&options.load(TWIN, &[]).unwrap()).unwrap();
+    for close_up in CloseUp::all(&room) {
+        let changes = close_up.changes(room.eye);
+        let narrow = Options { pixels: Some(16), bins: Some(160), ..options.clone() };
+        let loaded = narrow.load(TWIN, &changes.each_ref().map(String::as_str)).unwrap();
+        let scene = &loaded.scene;
+        let middle = scene.sensor.project(close_up.place - room.eye).unwrap();
+        assert!((middle.x - 8.0).abs() < 1e-9 && (middle.y - 8.0).abs() < 1e-9, "{middle:?}");
+        let across = close_up.half / 8.0 / close_up.place.distance(room.eye);
+        assert!((scene.sensor.pixel_width() / across - 1.0).abs() < 1e-9);
+        // The light tracer judges every pixel.
+        let judged = Referee::Light.judged_of(scene).unwrap();
+        assert!(judged.iter().all(|&judged| judged), "{}", close_up.key);
+        let regions = close_up.regions(scene, &judged).unwrap();
+        assert_eq!([0, 1, 2].map(|index| regions[index].pixels.len()), [256, 256, 64]);
+        let bin = ((room.through(close_up.place) - 3.6) / 0.04) as usize;
+        assert!(regions[1].bins.contains(&bin) && regions[1].bins.len() < 13);
+        assert_eq!((regions[0].bins.clone(), &regions[1].bins), (0..160, &regions[2].bins));
+    }
+}
+
+#[test]
 fn the_delay_behind_the_ball_is_that_of_the_glass() {
     let options = trial("delay");
     let room = Room::of(&options.load(NAME, &[]).unwrap()).unwrap();
@@ -38,20 +63,38 @@ fn all_files_are_made() {
     let _ = fs::remove_dir_all(&options.out);
     let result = run(&options, &mut Watch::default()).unwrap();
     let out = options.out.join(NAME);
-    for file in ["sequence.png", "viewer.html", "caustics.html", "delay.json", "caustics-area.json"]
-    {
+    for file in [
+        "sequence.png",
+        "viewer.html",
+        "caustics.html",
+        "delay.json",
+        "caustics-area.json",
+        "caustics-close.json",
+    ] {
         assert!(fs::metadata(out.join(file)).unwrap().len() > 100, "{file}");
     }
     assert!(result.events.windows(2).all(|pair| pair[0].opl <= pair[1].opl));
     assert!(result.events.len() >= 9, "{:?}", result.events);
     assert_eq!(result.twin.methods[..3], ["path", "light", "beams"]);
-    assert!(result.twin.regions.iter().all(|region| region.differences.len() == 5));
+    assert!(result.twin.regions.iter().all(|region| region.differences.len() == 6));
+    let close: Vec<_> = result.close.iter().flat_map(|found| &found.regions).collect();
+    // All cells that are compared close up hold light, and path tracing has a bound there.
+    assert_eq!(close.len(), 6);
+    assert!(close.iter().all(|region| region.levels[1].mean > 0.0), "{close:?}");
+    assert!(close.iter().all(|region| region.unseen.is_none_or(|unseen| unseen > 0.0)));
+    assert!(result.equal_time.lamps.is_none() && result.equal_time.whole().factor_whole.is_none());
     assert!(!out.join("caustics").exists(), "renders are removed at the end");
     assert!(
         result.twin.regions.iter().all(|region| region.levels[1].mean > 0.0 || region.pixels < 4)
     );
     let page = fs::read_to_string(out.join("index.html")).unwrap();
-    for part in ["delta pulse, bin", "continuous emission", "agree where", "Provenance"] {
+    for part in [
+        "delta pulse, bin",
+        "continuous emission",
+        "agree where",
+        "path, light and beams",
+        "Provenance",
+    ] {
         assert!(page.contains(part), "{part}");
     }
     let kept: MirrorsResult =

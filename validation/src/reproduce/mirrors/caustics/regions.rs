@@ -13,38 +13,28 @@ use crate::measure::layout;
 
 /// Where light is compared.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Region {
-    pub(super) label: String,
-    pub(super) pixels: Vec<usize>,
-    pub(super) bins: Range<usize>,
+pub(in super::super) struct Region {
+    pub(in super::super) label: String,
+    pub(in super::super) pixels: Vec<usize>,
+    pub(in super::super) bins: Range<usize>,
 }
 
 /// Blocks about places of the room that have a pixel which the mask admits, and all that it admits.
 pub(super) fn regions(room: &Room, scene: &Scene, mask: &[bool]) -> Result<Vec<Region>> {
-    let axis = layout(&scene.film, 0.0)?.time;
-    let (bins, width_opl, start) =
-        axis.map_or((0, 1.0, 0.0), |axis| (axis.bins, axis.bin_width_opl, axis.start_opl));
-    let window = |from: f64, to: f64| -> Range<usize> {
-        let bin = |opl: f64| ((opl - start) / width_opl).round().clamp(0.0, bins as f64) as usize;
-        bin(from)..bin(to).max(bin(from) + 1).min(bins)
-    };
     let Room { lamp, ball, floor, back, .. } = *room;
     let halfway = 0.5 * (room.poles()[1] + room.focus());
     let t_floor = room.through(floor);
     let t_halfway = room.through(halfway);
     let beside = floor + DVec3::new(0.0, 0.0, 0.5);
     let below = DVec3::new(lamp.x, floor.y, 0.3);
+    let floor_window = window(scene, t_floor - 0.12, t_floor + 0.2)?.1;
+    let (bins, fog_window) = window(scene, t_halfway - 0.16, t_halfway + 0.28)?;
     let whole = 0..bins;
     let list: [(&str, DVec3, f64, Range<usize>); 8] = [
         ("caustic on the floor, all time", floor, 0.16, whole.clone()),
-        ("caustic on the floor, as it arrives", floor, 0.16, window(t_floor - 0.12, t_floor + 0.2)),
+        ("caustic on the floor, as it arrives", floor, 0.16, floor_window),
         ("focused light in fog, all time", halfway, 0.12, whole.clone()),
-        (
-            "focused light in fog, as it arrives",
-            halfway,
-            0.12,
-            window(t_halfway - 0.16, t_halfway + 0.28),
-        ),
+        ("focused light in fog, as it arrives", halfway, 0.12, fog_window),
         ("floor in front of the caustic", beside, 0.2, whole.clone()),
         ("floor below the lamp", below, 0.3, whole.clone()),
         ("back wall behind the lamp", back, 0.3, whole.clone()),
@@ -69,6 +59,15 @@ pub(super) fn regions(room: &Room, scene: &Scene, mask: &[bool]) -> Result<Vec<R
         bins: whole,
     });
     Ok(regions)
+}
+
+/// The film's bins, and those between two OPLs \[m\], at least one.
+pub(in super::super) fn window(scene: &Scene, from: f64, to: f64) -> Result<(usize, Range<usize>)> {
+    let axis = layout(&scene.film, 0.0)?.time;
+    let (bins, width, start) =
+        axis.map_or((0, 1.0, 0.0), |axis| (axis.bins, axis.bin_width_opl, axis.start_opl));
+    let bin = |opl: f64| ((opl - start) / width).round().clamp(0.0, bins as f64) as usize;
+    Ok((bins, bin(from)..bin(to).max(bin(from) + 1).min(bins)))
 }
 
 /// Pixels within `half` \[m\] of a place, across and along the image, that the mask admits.
