@@ -45,9 +45,9 @@ const SEQUENCE: f64 = 3.0;
 const RACE: f64 = 0.2;
 const REFERENCE: f64 = 3.0;
 /// Likewise of the renders of a caustic comparison: path, light, and beams, who render twice. Of the
-/// whole room path tracing resolves little, however long; close up it is what limits the bounds.
+/// whole room path tracing resolves little, however long; close up it limits the bounds, and beams do next.
 const CAUSTICS: [f64; 3] = [0.25, 0.75, 0.75];
-const CAUSTICS_CLOSE: [f64; 3] = [1.0, 0.25, 0.25];
+const CAUSTICS_CLOSE: [f64; 3] = [1.0, 0.25, 0.75];
 const CAUSTICS_POINT: [f64; 3] = [0.25, 0.5, 0.5];
 /// Narrow cameras.
 const CLOSE_UPS: f64 = 2.0;
