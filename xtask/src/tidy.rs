@@ -19,6 +19,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("tpb-optics", 0),
     ("tpb-accel", 0),
     ("tpb-plot", 0),
+    ("tpb-statistics", 0),
     ("tpb-browser", 0),
     ("tpb-page", 0),
     ("tpb-scene", 1),

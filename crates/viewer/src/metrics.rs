@@ -25,8 +25,9 @@
 use rayon::prelude::*;
 use serde::Serialize;
 use tpb_film::Arrays;
+use tpb_statistics::VarianceSum;
 
-use crate::interval::{Estimate, Sum};
+use crate::interval::{Estimate, half};
 
 /// Part of the mean of |r| that keeps relative errors finite.
 pub(crate) const EPSILON: f64 = 1e-2;
@@ -206,15 +207,14 @@ impl Sums {
 
     /// Half widths of the intervals of Σd: cells independent, and at most.
     fn half_widths(&self, freedoms: [f64; 2]) -> Option<(f64, f64)> {
-        let (mut independent, mut bound) = (Sum::default(), Sum::default());
+        let (mut independent, mut bound) = (VarianceSum::default(), VarianceSum::default());
         for (variances, freedom) in self.variances.iter().zip(freedoms) {
-            independent = independent.and(variances.sum, variances.squares, freedom);
-            let together = variances.deviations * variances.deviations;
-            bound = bound.and(together, together * together, freedom);
+            independent = independent.and_many(variances.sum, variances.squares, freedom);
+            bound = bound.and(variances.deviations * variances.deviations, freedom);
         }
         // A sum of many cells has more freedom than any of them; the bound holds for all that.
-        let bound = bound.half()?;
-        Some((independent.half()?.min(bound), bound))
+        let bound = half(bound)?;
+        Some((half(independent)?.min(bound), bound))
     }
 }
 

@@ -10,13 +10,13 @@
 //!   are Satterthwaite's (1946), V²/Σ(V_i²/f_i).
 
 use serde::{Deserialize, Serialize};
+use tpb_statistics::VarianceSum;
 
 use super::colour::{GREY, diverging, sequential};
 use super::compare::Maps;
 use super::picture::Picture;
 use super::truth::Truth;
 use crate::statistics::batches::summarise;
-use crate::statistics::student;
 
 /// Decades that the scale of variances spans.
 const DECADES: f64 = 4.0;
@@ -158,17 +158,12 @@ fn block(map: &Maps, truth: &Truth, pixels: &[usize]) -> (f64, f64) {
         .collect();
     let found = summarise(&sums);
     let own = found.standard_error * found.standard_error;
-    let (mut variance, mut uncertainty) = (own, own * own / (sums.len() as f64 - 1.0));
+    let mut variance = VarianceSum::default().and(own, sums.len() as f64 - 1.0);
     for &pixel in pixels {
         let reference = truth.window_variance[pixel] / (energy * energy);
-        variance += reference;
-        uncertainty += reference * reference / truth.window_freedom;
+        variance = variance.and(reference, truth.window_freedom);
     }
-    if variance <= 0.0 {
-        return (found.mean, 0.0);
-    }
-    let freedom = variance * variance / uncertainty;
-    (found.mean, student::quantile(0.5 * CHANCE, freedom) * variance.sqrt())
+    (found.mean, variance.half_width(0.5 * CHANCE).unwrap_or(f64::INFINITY))
 }
 
 /// A scale from one end of a colour map to the other, as a flat picture.

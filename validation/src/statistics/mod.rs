@@ -3,7 +3,8 @@
 //!
 //! * [`batches`]: independent batches of a few linear contrasts, their means and standard errors.
 //!   A beam fills many cells, so cells are correlated and never serve as samples themselves.
-//! * [`student`]: tail probabilities and quantiles of Student's t, far into the tails.
+//! * [`student`]: tail probabilities and quantiles of Student's t, far into the tails
+//!   (`crates/statistics`).
 //! * [`multiple`]: Holm and Šidák corrections for many simultaneous tests.
 //! * [`agreement`]: the verdict on a set of contrasts with known expectations: *different*
 //!   (significant after Holm), *equivalent* (every confidence interval within the margin), or
@@ -24,7 +25,6 @@ pub mod chi_square;
 pub mod multiple;
 pub mod ratio;
 pub mod split;
-pub mod student;
 
 pub use agreement::{Contrast, Criterion, Finding, Judgement, Target, judge};
 pub use batches::Batches;
@@ -32,6 +32,7 @@ pub use chi_square::{ChiSquare, chi_square};
 pub use multiple::{holm, sidak};
 pub use ratio::{Factor, RatioInterval, Winner, ratio_of_means};
 pub use split::{Gram, ReferenceNoise, Split};
+pub use tpb_statistics::student;
 
 /// The larger of two errors; a NaN is worse than any.
 pub fn worse(a: f64, b: f64) -> f64 {

@@ -6,6 +6,7 @@
 //! own noise, such as the NMSE of whole cubes.
 
 use serde::{Deserialize, Serialize};
+use tpb_statistics::VarianceSum;
 
 use crate::statistics::batches::summarise;
 use crate::statistics::student;
@@ -38,10 +39,11 @@ pub fn ratio_of_means(a: &[f64], b: &[f64], confidence: f64) -> Option<RatioInte
     if !positive || a.len() < 2 || b.len() < 2 {
         return None;
     }
-    let (u, v) = ((x.standard_error / x.mean).powi(2), (y.standard_error / y.mean).powi(2));
-    let error = (u + v).sqrt();
-    let denominator = u * u / (a.len() as f64 - 1.0) + v * v / (b.len() as f64 - 1.0);
-    let freedom = if denominator > 0.0 { (u + v) * (u + v) / denominator } else { 1e6 };
+    let relative = VarianceSum::default()
+        .and((x.standard_error / x.mean).powi(2), a.len() as f64 - 1.0)
+        .and((y.standard_error / y.mean).powi(2), b.len() as f64 - 1.0);
+    // Histories are JSON, which knows no infinity.
+    let (error, freedom) = (relative.variance().sqrt(), relative.freedom().min(1e6));
     let log = (x.mean / y.mean).ln();
     let half_width = student::quantile(0.5 * (1.0 - confidence), freedom) * error;
     let t = if log == 0.0 { 0.0 } else { log / error };

@@ -2,9 +2,19 @@
 //!
 //! The tail is the regularised incomplete beta function, P(T > t) = I_x(ν/2, 1/2)/2 with
 //! x = ν/(ν + t²), which keeps its relative accuracy however small it is (`statrs`). Degrees of
-//! freedom need not be whole (Welch & Satterthwaite).
+//! freedom need not be whole, and may be infinite (the normal distribution).
 
 use statrs::distribution::{Continuous, ContinuousCDF, StudentsT};
+
+/// Beyond so many degrees the distribution is taken as normal: a tail of 1e-12 changes by 7e-6 of
+/// itself, quantiles by 1e-7.
+const MANY: f64 = 1e8;
+
+/// Student's t with `freedom` degrees of freedom; `None` unless `freedom` > 0.
+fn distribution(freedom: f64) -> Option<StudentsT> {
+    let freedom = if freedom > MANY { f64::INFINITY } else { freedom };
+    StudentsT::new(0.0, 1.0, freedom).ok()
+}
 
 /// P(T > t) with `freedom` > 0 degrees of freedom.
 pub fn upper_tail(t: f64, freedom: f64) -> f64 {
@@ -17,7 +27,7 @@ pub fn upper_tail(t: f64, freedom: f64) -> f64 {
     if t == f64::NEG_INFINITY {
         return 1.0;
     }
-    StudentsT::new(0.0, 1.0, freedom).map_or(1.0, |student| student.sf(t))
+    distribution(freedom).map_or(1.0, |student| student.sf(t))
 }
 
 /// P(|T| > |t|).
@@ -32,7 +42,7 @@ pub fn quantile(tail: f64, freedom: f64) -> f64 {
     if tail > 0.5 {
         return -quantile(1.0 - tail, freedom);
     }
-    let Ok(student) = StudentsT::new(0.0, 1.0, freedom) else { return f64::NAN };
+    let Some(student) = distribution(freedom) else { return f64::NAN };
     let (mut low, mut high) = (0.0, 1.0);
     while student.sf(high) > tail && high < 1e150 {
         (low, high) = (high, 2.0 * high);
@@ -58,8 +68,11 @@ pub fn quantile(tail: f64, freedom: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use std::f64::consts::PI;
+
+    use proptest::prelude::*;
+
+    use super::*;
 
     #[test]
     fn one_degree_of_freedom_is_cauchy_far_into_the_tail() {
@@ -87,5 +100,21 @@ mod tests {
         assert_eq!(two_sided(f64::INFINITY, 31.0), 0.0);
         assert_eq!(two_sided(0.0, 31.0), 1.0);
         assert_eq!(two_sided(f64::NAN, 31.0), 1.0);
+    }
+
+    #[test]
+    fn very_many_degrees_are_normal() {
+        for freedom in [1e7, 1e8, 1.1e8, 1e12, u64::MAX as f64, f64::INFINITY] {
+            assert!((quantile(0.025, freedom) - 1.959_963_984_540_054).abs() < 1e-6, "{freedom}");
+            assert!((quantile(1e-12, freedom) - 7.034_483_825).abs() < 2e-5, "{freedom}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn more_freedom_is_narrower(a in 1.0..1e7_f64, more in 0.0..1e9_f64) {
+            let (wide, narrow) = (quantile(0.025, a), quantile(0.025, a + more));
+            prop_assert!(wide >= narrow * (1.0 - 1e-9) && narrow > 1.9599 && wide < 12.71);
+        }
     }
 }
