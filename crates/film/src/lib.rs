@@ -32,8 +32,8 @@ pub use film::{FilmOptions, OutputChannels, TransientFilm};
 pub use layout::{Layout, TimeAxis};
 pub use ledger::Ledger;
 pub use picture::{
-    ArrivalColours, ArrivalTime, Frames, PictureOptions, Tone, ToneMap, arrival_scale, srgb,
-    white_level,
+    ArrivalColours, ArrivalTime, Frames, PictureOptions, Tone, ToneMap, arrival_scale,
+    linear_of_srgb, srgb, white_level,
 };
 pub use pulse::{Pulse, PulseReport};
 pub use quadrature::integrate;

@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 use std::io::Cursor;
 
 use glam::DVec2;
+use tpb_film::srgb;
 
 /// Width and height of the image.
 const SIZE: [usize; 2] = [448, 364];
@@ -61,7 +62,7 @@ fn texels() -> Vec<u8> {
             let colour = colour((uv - 0.5) * FLOOR);
             sum.iter_mut().zip(colour).for_each(|(sum, value)| *sum += value);
         }
-        sum.map(|sum| coded(sum / (SAMPLES * SAMPLES) as f64))
+        sum.map(|sum| srgb(sum / (SAMPLES * SAMPLES) as f64))
     };
     (0..width * height).flat_map(texel).collect()
 }
@@ -112,13 +113,6 @@ fn tiles(place: DVec2) -> [f64; 3] {
     } else {
         SAND
     }
-}
-
-/// sRGB's curve, from linear values to coded bytes.
-fn coded(linear: f64) -> u8 {
-    let coded =
-        if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * coded).round() as u8
 }
 
 #[cfg(test)]

@@ -1,23 +1,18 @@
 //! From numbers to colours: one exposure for all frames, and two false-colour scales.
 //!
 //! Display white is the luminance that 99 % of the reference's lit cells, among the frames shown, do
-//! not exceed; what is brighter is white. Then the sRGB curve (IEC 61966-2-1).
+//! not exceed; what is brighter is white ([`tpb_film::white_level`]). Then the sRGB curve
+//! ([`tpb_film::srgb`]).
 
-use tpb_film::Arrays;
+use tpb_film::{Arrays, white_level};
 use tpb_optics::spectrum::LUMINANCE;
 
 /// Part of the lit cells that is not brighter than display white.
 const WHITE: f64 = 0.99;
 
-/// Display white of a set of luminances: its 99th percentile over those that are positive; 1 if
-/// there is none.
+/// Display white of a set of luminances.
 pub fn white(luminances: impl Iterator<Item = f64>) -> f64 {
-    let mut lit: Vec<f64> = luminances.filter(|&l| l > 0.0 && l.is_finite()).collect();
-    if lit.is_empty() {
-        return 1.0;
-    }
-    let place = ((lit.len() as f64 * WHITE) as usize).min(lit.len() - 1);
-    *lit.select_nth_unstable_by(place, f64::total_cmp).1
+    white_level(luminances, WHITE)
 }
 
 /// Luminances of one bin of a cube.
@@ -37,14 +32,6 @@ pub fn luminance(channels: impl Iterator<Item = f64>) -> f64 {
         [grey, ..] => *grey,
         [] => 0.0,
     }
-}
-
-/// A linear display value as an 8-bit sRGB sample; what is outside of \[0, 1\] is cut off.
-pub fn srgb(linear: f64) -> u8 {
-    let linear = linear.clamp(0.0, 1.0);
-    let encoded =
-        if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-    (255.0 * encoded).round() as u8
 }
 
 /// Black over purple and orange to white, of lightness that rises evenly: anchors of a cubehelix
@@ -77,13 +64,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn white_is_a_percentile_of_what_is_lit() {
-        let values = (1..=1000).map(f64::from).chain([0.0; 500]);
-        assert_eq!(white(values), 991.0);
-        assert_eq!(white([0.0, f64::NAN].into_iter()), 1.0);
-    }
-
-    #[test]
     fn scales_run_from_end_to_end_and_grow_lighter() {
         assert_eq!((sequential(0.0), sequential(1.0)), ([0; 3], [255; 3]));
         let luma = |c: [u8; 3]| {
@@ -92,6 +72,5 @@ mod tests {
         let lumas: Vec<f64> = (0..=50).map(|i| luma(sequential(f64::from(i) / 50.0))).collect();
         assert!(lumas.windows(2).all(|pair| pair[0] < pair[1]), "{lumas:?}");
         assert_eq!((diverging(0.0), diverging(-3.0)), ([255; 3], [0, 90, 181]));
-        assert_eq!((srgb(-1.0), srgb(0.215_861), srgb(7.0)), (0, 128, 255));
     }
 }

@@ -3,9 +3,8 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use tpb_film::{Arrays, atomic_write};
+use tpb_film::{Arrays, atomic_write, linear_of_srgb, srgb};
 
-use super::colour::srgb;
 use crate::error::{Result, ValidationError};
 
 /// Pictures of a document are at most this wide, and so many in a row.
@@ -51,22 +50,28 @@ impl Picture {
         })
     }
 
-    /// The mean of squares of `side` by `side`, in display values; less at right and lower ends.
+    /// The mean light of squares of `side` by `side`: samples are decoded, averaged, and encoded, so
+    /// that noise does not change brightness. Squares at right and lower ends may be smaller. What was
+    /// cut off at white stays cut off.
     #[must_use]
     pub fn reduced(&self, side: usize) -> Self {
+        if side == 1 {
+            return self.clone();
+        }
+        let linear: Vec<f64> = (0..=255).map(|s| linear_of_srgb(f64::from(s) / 255.0)).collect();
         let (width, height) = (self.width.div_ceil(side), self.height.div_ceil(side));
         Self::by_pixel(width, height, |pixel| {
             let (x0, y0) = (pixel % width * side, pixel / width * side);
-            let (mut sums, mut count) = ([0_u32; 3], 0);
+            let (mut sums, mut count) = ([0.0; 3], 0.0);
             for y in y0..(y0 + side).min(self.height) {
-                for colour in
-                    &self.pixels[y * self.width + x0..y * self.width + (x0 + side).min(self.width)]
-                {
-                    sums.iter_mut().zip(colour).for_each(|(sum, &c)| *sum += u32::from(c));
-                    count += 1;
+                let row = y * self.width;
+                for colour in &self.pixels[row + x0..row + (x0 + side).min(self.width)] {
+                    let light = colour.map(|sample| linear[usize::from(sample)]);
+                    sums.iter_mut().zip(light).for_each(|(sum, light)| *sum += light);
+                    count += 1.0;
                 }
             }
-            sums.map(|sum| ((sum + count / 2) / count) as u8)
+            sums.map(|sum| srgb(sum / count))
         })
     }
 
@@ -158,11 +163,23 @@ mod tests {
     }
 
     #[test]
-    fn reducing_takes_means_also_at_the_ends() {
-        let picture = Picture::by_pixel(3, 2, |pixel| [pixel as u8 * 10, 7, pixel as u8]);
-        // Red: (0 + 10 + 30 + 40)/4 and (20 + 50)/2; blue is rounded: (2 + 5)/2.
-        assert_eq!(picture.reduced(2).pixels, [[20, 7, 2], [35, 7, 4]]);
+    fn reducing_takes_means_of_light_also_at_the_ends() {
+        let red = [0, 100, 50, 255, 255, 255];
+        let picture = Picture::by_pixel(3, 2, |pixel| [red[pixel], 7, 255]);
+        // sRGB's linear values of 100 and 50 are 0.1274 and 0.0319: the means are
+        // (0 + 0.1274 + 1 + 1)/4 = 0.5319 and (0.0319 + 1)/2 = 0.5160, encoded 193 and 190.
+        assert_eq!(picture.reduced(2).pixels, [[193, 7, 255], [190, 7, 255]]);
         assert_eq!(picture.reduced(1), picture);
+    }
+
+    /// Two frames of the same light, one quiet, one noisy, are equally bright when they are small.
+    #[test]
+    fn noise_does_not_darken_a_smaller_picture() {
+        let frame = |light: &dyn Fn(usize) -> f64| {
+            Picture::by_pixel(64, 64, |pixel| [srgb(light(pixel)); 3]).reduced(64).pixels[0][0]
+        };
+        let (quiet, noisy) = (frame(&|_| 0.25), frame(&|pixel| f64::from(pixel % 4 == 0)));
+        assert_eq!((quiet, noisy), (137, 137), "the mean of encoded values would be 64");
     }
 
     #[test]

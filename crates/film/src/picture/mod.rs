@@ -20,7 +20,7 @@ use tpb_optics::Spectrum;
 
 pub use arrival_time::{ArrivalColours, ArrivalTime, arrival_scale};
 pub use frames::Frames;
-pub use tone::{Tone, ToneMap, srgb, white_level};
+pub use tone::{Tone, ToneMap, linear_of_srgb, srgb, white_level};
 
 use crate::{Arrays, FilmError, atomic_write};
 

@@ -89,8 +89,9 @@ impl ToneMap {
     }
 }
 
-/// The luminance that `percentile` of the lit cells do not exceed, to 1/128 of an octave; cells
-/// that are not positive or not finite count as unlit. 1 if there are none.
+/// The luminance that `percentile` of the lit cells do not exceed, to 1/128 of an octave: of n lit
+/// cells in order of luminance, the ⌈percentile n⌉-th. Cells that are not positive or not finite count
+/// as unlit. 1 if there are none. The viewer's pages define display white likewise.
 pub fn white_level(luminances: impl Iterator<Item = f64>, percentile: f64) -> f64 {
     let mut histogram = vec![0_u64; BUCKETS];
     let mut lit = 0_u64;
@@ -125,12 +126,13 @@ fn filmic(x: f64) -> f64 {
     (x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)).clamp(0.0, 1.0)
 }
 
-/// The linear display value of an encoded one in \[0, 1\].
-fn linear_of_srgb(encoded: f64) -> f64 {
+/// The linear display value of an encoded one in \[0, 1\]: of an 8-bit sample, that over 255.
+pub fn linear_of_srgb(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
-/// A linear display value in \[0, 1\] as an 8-bit sRGB sample.
+/// A linear display value as an 8-bit sRGB sample; what is below 0 or no number is black, what is
+/// above 1 white.
 pub fn srgb(linear: f64) -> u8 {
     let encoded =
         if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
@@ -156,6 +158,9 @@ mod tests {
         // 90 % of 1005 lit cells is 905, to the 1/128 of the histogram.
         assert!((white / 905.0 - 1.0).abs() < 0.01, "{white}");
         assert_eq!(srgb(ToneMap::new(white, Tone::Linear, 0.0).grey(1e30)), 255);
+        // The rank is rounded up: 99 % of ten cells are all of them.
+        let white = white_level((0..10).map(|i| f64::from(1 << i)), 0.99);
+        assert!((512.0..516.0).contains(&white), "{white}");
         let odd = [0.0, -1.0, f64::NAN, f64::INFINITY];
         assert_eq!(white_level(odd.into_iter(), 0.99), 1.0, "nothing is lit");
     }
@@ -165,6 +170,7 @@ mod tests {
         assert_eq!((srgb(0.0), srgb(1.0)), (0, 255));
         assert_eq!(srgb(0.215_861), 128, "a middle grey");
         assert_eq!(srgb(0.002), 7, "the linear toe: 255 * 12.92 * 0.002 = 6.6");
+        assert_eq!([-1.0, 7.0, f64::INFINITY, f64::NAN].map(srgb), [0, 255, 255, 0]);
         for sample in 0..=255 {
             assert_eq!(srgb(linear_of_srgb(f64::from(sample) / 255.0)), sample);
         }
