@@ -22,6 +22,7 @@ use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 use tpb_film::{FilmOptions, TransientFilm};
+use tpb_optics::seed_of;
 use tpb_render::{Budget, Counts, RunSettings, Stopwatch, run};
 use tpb_scene::{Plan, Scene, Transport};
 
@@ -137,7 +138,7 @@ pub struct EqualTimePlan<'a> {
     pub time: Duration,
     /// Runs of each method, at least 3.
     pub replicates: u64,
-    /// Seed of the first run.
+    /// Seed: each run has one of its own ([`seed_of`]).
     pub seed: u64,
 }
 
@@ -156,7 +157,8 @@ impl EqualTimePlan<'_> {
         for replicate in 0..self.replicates {
             for (index, estimator) in self.methods.iter().enumerate() {
                 // No two runs share random numbers.
-                let seed = self.seed + replicate * self.methods.len() as u64 + index as u64;
+                let number = replicate * self.methods.len() as u64 + index as u64;
+                let seed = seed_of(self.seed, number);
                 let (cube, record, used) = self.timed::<C>(estimator, seed)?;
                 options[index] = used;
                 runs[index].push((cube, record));

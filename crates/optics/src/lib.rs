@@ -8,7 +8,7 @@
 //! * [`medium`]: transmittance and free flights in a homogeneous medium, mono or coloured.
 //! * [`warp`]: uniform numbers to directions, discs and distances, each with its pdf.
 //! * [`frame`]: orthonormal bases.
-//! * [`rng`]: one stream of random numbers per (seed, pass, item).
+//! * [`rng`]: one stream of random numbers per (seed, pass, item); seeds of runs that belong together.
 //!
 //! Directions are unit vectors along the propagation of light or of the camera ray, as each
 //! function says; angles are given by their cosines.
@@ -26,5 +26,5 @@ pub mod warp;
 pub use frame::Frame;
 pub use medium::Coefficients;
 pub use phase::Phase;
-pub use rng::Stream;
+pub use rng::{Stream, seed_of};
 pub use spectrum::{Rgb, Spectrum};

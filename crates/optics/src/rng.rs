@@ -15,7 +15,7 @@ pub struct Stream(Xoshiro256PlusPlus);
 impl Stream {
     /// The stream of one item (a pixel, a photon) of one pass of a run with `seed`.
     pub fn new(seed: u64, pass: u64, item: u64) -> Self {
-        Self(Xoshiro256PlusPlus::seed_from_u64(mix(mix(mix(seed) ^ pass) ^ item)))
+        Self(Xoshiro256PlusPlus::seed_from_u64(mix(seed_of(seed, pass) ^ item)))
     }
 
     /// Uniform in [0, 1): 53 random bits.
@@ -30,6 +30,12 @@ impl Stream {
         // The product's rounding could reach `count` for counts above 2^53 only.
         ((self.uniform() * count as f64) as usize).min(count - 1)
     }
+}
+
+/// The seed of one of many runs that belong together: for one `seed`, each `index` has another, and
+/// runs of neighbouring seeds have nothing in common. Any numbers will do; nothing overflows.
+pub fn seed_of(seed: u64, index: u64) -> u64 {
+    mix(mix(seed) ^ index)
 }
 
 /// The finaliser of SplitMix64 on the next state of its counter.
@@ -50,6 +56,18 @@ mod tests {
         assert_eq!(draw(1, 2, 3).to_bits(), draw(1, 2, 3).to_bits());
         let others = [draw(2, 2, 3), draw(1, 3, 3), draw(1, 2, 4), draw(1, 3, 2), draw(3, 2, 1)];
         assert!(others.iter().all(|&u| u.to_bits() != draw(1, 2, 3).to_bits()));
+    }
+
+    #[test]
+    fn runs_of_all_seeds_have_seeds_of_their_own() {
+        let seeds = [0, 1, 2, 9, 10, u64::MAX / 10, u64::MAX - 1, u64::MAX];
+        let runs = |&seed: &u64| (0..200).map(move |index| seed_of(seed, index));
+        let mut all: Vec<u64> = seeds.iter().flat_map(runs).collect();
+        all.extend(seeds);
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), count);
     }
 
     #[test]

@@ -88,7 +88,7 @@ impl EqualTimeRun {
             control: self.control,
             time: Duration::from_secs(context.effort.pick(6, self.full_seconds)),
             replicates: context.effort.pick(5, 8),
-            seed: context.seed.wrapping_mul(1000),
+            seed: context.seed,
         };
         Ok((plan.run()?, note))
     }

@@ -58,7 +58,7 @@ pub struct Contest<'a> {
     pub time: Duration,
     /// Replicates of each method.
     pub replicates: u64,
-    /// Seed of the first run.
+    /// Seed.
     pub seed: u64,
     /// Commit of the sources.
     pub commit: &'a str,
@@ -121,7 +121,7 @@ impl Contest<'_> {
             methods,
             times,
             replicates: self.replicates,
-            seed: self.seed.wrapping_mul(1000),
+            seed: self.seed,
             commit: self.commit,
             folder: self.folder.clone(),
         }

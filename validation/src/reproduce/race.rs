@@ -18,6 +18,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tpb_film::archive::{ArchiveReader, ArchiveWriter, Compression};
 use tpb_film::{Arrays, FilmOptions, TransientFilm, atomic_write};
+use tpb_optics::seed_of;
 use tpb_render::{Budget, Method, RunSettings, Stopwatch, run};
 use tpb_scene::load::LoadedScene;
 use tpb_scene::{Plan, Transport};
@@ -89,7 +90,7 @@ pub struct Race<'a> {
     pub times: Vec<Duration>,
     /// Replicates of each method.
     pub replicates: u64,
-    /// Seed of the first.
+    /// Seed: each replicate has one of its own ([`seed_of`]).
     pub seed: u64,
     /// Commit of the sources.
     pub commit: &'a str,
@@ -105,7 +106,8 @@ impl Race<'_> {
         for number in 0..self.replicates {
             for (index, estimator) in self.methods.iter().enumerate() {
                 // No two runs share random numbers.
-                let seed = self.seed + number * self.methods.len() as u64 + index as u64;
+                let run = number * self.methods.len() as u64 + index as u64;
+                let seed = seed_of(self.seed, run);
                 let path = self.folder.join(format!("{}-{number}.npz", estimator.name()));
                 let key = self.key(estimator, seed);
                 let kept = read_record(&path).filter(|kept| kept.is_of(&key));

@@ -1,6 +1,7 @@
 //! Runs with checkpoints.
 
 use tpb_film::{FilmOptions, TransientFilm};
+use tpb_optics::seed_of;
 use tpb_render::{Budget, Method, RunSettings, RunSummary, Stopwatch, run};
 use tpb_scene::{Plan, Transport};
 
@@ -68,7 +69,8 @@ impl RunTimePlan<'_> {
         for replicate in 0..self.replicates {
             for (index, estimator) in self.methods.iter().enumerate() {
                 // No two runs share random numbers.
-                let seed = self.seed + replicate * self.methods.len() as u64 + index as u64;
+                let number = replicate * self.methods.len() as u64 + index as u64;
+                let seed = seed_of(self.seed, number);
                 let checkpoints = runs[index].first().map(|first| first.snapshots.len());
                 let run = self.replicate::<C>(estimator, seed, checkpoints)?;
                 runs[index].push(run);
