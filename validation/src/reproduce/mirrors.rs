@@ -1,7 +1,8 @@
 //! Figure 3: *Mirrors*, delta and continuous emission from one render, and what can be checked of it.
 //!
 //! * One beams render of the point-lamp room gives the delta sequence; continuous emission is its
-//!   running sum. Captions name what geometry says arrives in a frame ([`room`]).
+//!   running sum. Captions name what geometry says arrives in a frame ([`room`]), and what is seen in it
+//!   (`seen`).
 //! * The delay behind the glass ball, against its exact optical path length ([`delay`]).
 //! * Caustics: path tracing, light tracing and progressive beams on the twin with a tiny area lamp,
 //!   region by region, and through a narrow camera; and what path tracing misses of the point lamp
@@ -13,6 +14,7 @@ mod close_up;
 pub mod delay;
 mod pages;
 pub mod room;
+mod seen;
 
 use std::path::Path;
 

@@ -19,15 +19,45 @@ use crate::statistics::Factor;
 /// Between pictures of a grid.
 const GAP: usize = 4;
 const PAPER: [u8; 3] = [255; 3];
-/// OPL at which frames are shown \[m\], chosen before anything was compared, and what is to be seen
-/// then, for those who cannot see it.
+/// OPL at which frames are shown \[m\], chosen before anything was compared, and what is seen then and
+/// where, written by people who looked at them.
 const SHOWN: [(f64, &str); 6] = [
-    (4.2, "a dome of lit fog below the lamp"),
-    (4.75, "the lit fog reaches the red wall on the left and the green one on the right"),
-    (5.25, "bands of direct light on both blocks, arcs along the walls, the front near the floor"),
-    (5.8, "direct light runs over the floor and down the walls"),
-    (6.3, "the front is on the back wall; the shadow of the tall block is seen on it"),
-    (7.35, "diffuse light everywhere, coloured by the walls"),
+    (
+        4.2,
+        "A dome of lit fog hangs from the lamp at the top, brightest below the lamp; its lower border, \
+         the front, is at the height of the picture's middle. All else is dark.",
+    ),
+    (
+        4.75,
+        "The lit fog has reached the red wall on the left and the green one on the right: both are \
+         bright down to a curved border. A short white bar left of the middle is the top of the tall \
+         block. The lowest quarter of the picture is dark.",
+    ),
+    (
+        5.25,
+        "White bands of direct light: on the front of the tall block, left of the middle, on top of the \
+         short one, lower right, and on the floor at the lower border. A red and a green arc run down \
+         the walls. The upper part of the tall block and the front of the short one are grey: lit by \
+         the fog alone.",
+    ),
+    (
+        5.8,
+        "A white arc crosses the floor from corner to corner, behind the short block. The arcs on the \
+         walls have moved to the back. On the back wall below the lamp a pale patch begins: the front \
+         arrives. The left side of the tall block is red, the right one of the short block green, lit \
+         by the walls.",
+    ),
+    (
+        6.3,
+        "The front is a broad white ring on the back wall; the tall block hides its lower left. Thin \
+         arcs remain at the back of the red and of the green wall, and a white bar at the right end of \
+         the floor.",
+    ),
+    (
+        7.35,
+        "The front has gone: diffuse light everywhere, reddish at the left, greenish at the right. The \
+         front of the short block is darkest.",
+    ),
 ];
 
 /// Writes pictures, charts, the viewer's page, and `index.html`.
@@ -119,6 +149,9 @@ fn sequence(page: &mut Page, out: &Path, arrays: &[Arrays; 3]) -> Result<()> {
         &columns,
         &rows,
     );
+    page.text("What is seen, and where:");
+    let line = |(bin, (_, seen)): (&usize, (f64, &str))| format!("Bin {bin}. {seen}");
+    page.list(&bins.iter().zip(SHOWN).map(line).collect::<Vec<_>>());
     Ok(())
 }
 

@@ -12,7 +12,7 @@ use super::super::picture::Picture;
 use super::super::{Options, report, tables};
 use super::caustics::{BEAMS_LIGHT, Caustics, LIMIT_LIGHT, MARGIN, THREE};
 use super::room::Event;
-use super::{MirrorsResult, TWIN};
+use super::{MirrorsResult, TWIN, seen};
 use crate::error::{Result, ValidationError};
 
 /// Between pictures of a grid.
@@ -63,31 +63,44 @@ pub(super) fn write(
     page.write(&out.join("index.html")).map(drop)
 }
 
-/// Events in frames of their own: of those that share one, the first.
-fn shown(events: &[Event], bins: usize) -> Vec<(usize, String)> {
-    let mut list: Vec<(usize, String)> = Vec::new();
+/// A frame that is shown.
+struct Shown {
+    bin: usize,
+    /// What happens in it, by geometry.
+    label: String,
+    /// What is seen.
+    seen: String,
+}
+
+/// Events in frames of their own: those that share one are named together, and what is seen is what
+/// the first of them tells.
+fn shown(events: &[Event], bins: usize) -> Vec<Shown> {
+    let mut list: Vec<Shown> = Vec::new();
     for event in events {
         let bin = event.bin.min(bins.saturating_sub(1));
         match list.last_mut() {
-            Some((last, label)) if *last == bin => {
-                *label = format!("{label}; {}", event.label);
+            Some(last) if last.bin == bin => {
+                last.label = format!("{}; {}", last.label, event.label);
             }
-            _ => list.push((bin, event.label.clone())),
+            _ => {
+                let (label, seen) = (event.label.clone(), event.seen.clone());
+                list.push(Shown { bin, label, seen });
+            }
         }
     }
     list
 }
 
-fn frames(arrays: &Arrays, events: &[(usize, String)]) -> Vec<Picture> {
-    let white = white(events.iter().flat_map(|&(bin, _)| frame_luminances(arrays, bin)));
-    events.iter().map(|&(bin, _)| Picture::frame(arrays, bin, white)).collect()
+fn frames(arrays: &Arrays, shown: &[Shown]) -> Vec<Picture> {
+    let white = white(shown.iter().flat_map(|shown| frame_luminances(arrays, shown.bin)));
+    shown.iter().map(|shown| Picture::frame(arrays, shown.bin, white)).collect()
 }
 
 fn sequences(
     page: &mut Page,
     out: &Path,
     edges: &[f64],
-    events: &[(usize, String)],
+    events: &[Shown],
     delta: Vec<Picture>,
     continuous: Vec<Picture>,
 ) -> Result<()> {
@@ -96,15 +109,16 @@ fn sequences(
     Picture::small_grid(&rows, GAP, PAPER).write(&out.join("small.png"))?;
     let columns: Vec<String> = events
         .iter()
-        .map(|&(bin, _)| {
+        .map(|&Shown { bin, .. }| {
             let opl = edges[bin];
             format!("bin {bin}: {opl:.2} m, {:.1} ns", 1e9 * seconds_from_opl(opl))
         })
         .collect();
     let row = |name: &str, pictures: Vec<Picture>| {
         let named = pictures.into_iter().zip(columns.iter().zip(events));
-        let with_alt = named
-            .map(|(picture, (column, (_, label)))| (picture, format!("{name}, {column}: {label}")));
+        let with_alt = named.map(|(picture, (column, shown))| {
+            (picture, format!("{name}, {column}: {}", shown.label))
+        });
         (name.to_owned(), with_alt.collect::<Vec<_>>())
     };
     page.heading("The sequence (the source's figure 3)");
@@ -115,8 +129,10 @@ fn sequences(
         &columns,
         &[row("delta pulse", delta), row("continuous emission", continuous)],
     );
-    let seen = |(bin, label): &(usize, String)| format!("Bin {bin}: {label}.");
-    page.list(&events.iter().map(seen).collect::<Vec<_>>());
+    page.text(&format!("What is seen, and where. {}", seen::LAYOUT));
+    let line = |Shown { bin, label, seen }: &Shown| format!("Bin {bin}, {label}. {seen}");
+    page.list(&events.iter().map(line).collect::<Vec<_>>());
+    page.text(seen::CONTINUOUS);
     Ok(())
 }
 
@@ -292,7 +308,8 @@ fn viewer(out: &Path, result: &MirrorsResult, arrays: &Arrays) -> Result<String>
     method.command = Some(result.command.clone());
     let mut page = tpb_viewer::Comparison::new("Mirrors", vec![method]);
     page.caption = "A pulse in a fog-filled room with mirrors and a glass ball.".into();
-    page.notes = result.events.iter().map(|e| format!("Bin {}: {}.", e.bin, e.label)).collect();
+    page.notes =
+        result.events.iter().map(|e| format!("Bin {}, {}. {}", e.bin, e.label, e.seen)).collect();
     report::viewer(&out.join("viewer.html"), &page)
 }
 

@@ -15,6 +15,7 @@ use tpb_scene::load::LoadedScene;
 use tpb_scene::{Scene, Vertex};
 
 use super::super::bin_of;
+use super::seen;
 use crate::error::{Result, ValidationError};
 
 /// Pixels on each side of the place of an event that its light is looked for in, for each 64 pixels
@@ -52,6 +53,9 @@ pub struct Room {
 pub struct Event {
     /// What.
     pub label: String,
+    /// What is seen then, and where in the picture.
+    #[serde(default)]
+    pub seen: String,
     /// When its light is seen \[m\].
     pub opl: f64,
     /// The bin of that.
@@ -135,27 +139,54 @@ impl Room {
         let straight = |p: DVec3| self.seen(self.lamp, p);
         let reflected = |p: DVec3| self.seen(self.image(), p);
         let list = [
-            ("the front meets the glass ball", near, straight(near), false),
-            ("the front meets the left mirror", self.left, straight(self.left), false),
-            ("the front meets the tilted mirror", self.tilted, straight(self.tilted), false),
-            ("the front off the left mirror meets the ball", near, reflected(near), false),
-            ("the light through the glass leaves the ball, late", far, self.through(far), true),
+            ("the front meets the glass ball", seen::BALL, near, straight(near), false),
+            ("the front meets the left mirror", seen::LEFT, self.left, straight(self.left), false),
+            (
+                "the front meets the tilted mirror",
+                seen::TILTED,
+                self.tilted,
+                straight(self.tilted),
+                false,
+            ),
+            (
+                "the front off the left mirror meets the ball",
+                seen::REFLECTED,
+                near,
+                reflected(near),
+                false,
+            ),
+            (
+                "the light through the glass leaves the ball, late",
+                seen::LEAVES,
+                far,
+                self.through(far),
+                true,
+            ),
             (
                 "without glass it would be at the focus by now",
+                seen::WITHOUT,
                 self.focus(),
                 straight(self.focus()),
                 false,
             ),
-            ("the front meets the back wall", self.back, straight(self.back), false),
+            ("the front meets the back wall", seen::BACK, self.back, straight(self.back), false),
             (
                 "the light through the glass is at its focus",
+                seen::FOCUS,
                 self.focus(),
                 self.through(self.focus()),
                 true,
             ),
-            ("the caustic lights the floor", self.floor, self.through(self.floor), true),
+            (
+                "the caustic lights the floor",
+                seen::CAUSTIC,
+                self.floor,
+                self.through(self.floor),
+                true,
+            ),
             (
                 "the front off the left mirror meets the back wall",
+                seen::RING,
                 self.back,
                 reflected(self.back),
                 false,
@@ -163,12 +194,13 @@ impl Room {
         ];
         let mut events: Vec<Event> = list
             .into_iter()
-            .filter_map(|(label, place, opl, peak)| {
+            .filter_map(|(label, seen, place, opl, peak)| {
                 let point = scene.sensor.project(place - self.eye)?;
                 let pixel = [point.x, point.y];
                 let peak = peak.then(|| brightest(arrays, pixel));
                 let bin = bin_of(&arrays.opl_edges, opl);
-                Some(Event { label: label.to_owned(), opl, bin, pixel, peak })
+                let [label, seen] = [label, seen].map(str::to_owned);
+                Some(Event { label, seen, opl, bin, pixel, peak })
             })
             .collect();
         events.sort_by(|a, b| a.opl.total_cmp(&b.opl));

@@ -23,6 +23,39 @@ fn the_room_is_as_the_scene_says_and_the_exact_delay_is_that_of_the_glass() {
     assert_eq!((twin.lamp, twin.ball, twin.eta), (room.lamp, room.ball, room.eta));
 }
 
+/// Pixels from the upper left corner, as parts of the picture.
+#[test]
+fn things_are_where_the_texts_say() {
+    let loaded = trial("seen").load(NAME, &[]).unwrap();
+    let room = Room::of(&loaded).unwrap();
+    let sensor = &loaded.scene.sensor;
+    let at = |place: glam::DVec3| {
+        let point = sensor.project(place - room.eye).unwrap();
+        [point.x, point.y].map(|pixel| pixel / loaded.scene.film.width as f64)
+    };
+    let (lamp, ball, tilted) = (at(room.lamp), at(room.ball), at(room.tilted));
+    assert!(lamp[0] < 0.4 && lamp[1] < 0.3, "upper left: {lamp:?}");
+    assert!(ball.iter().all(|&side| 0.5 < side && side < 0.6), "just past the middle: {ball:?}");
+    assert!(tilted[0] > 0.7 && (0.4..0.55).contains(&tilted[1]), "at the right: {tilted:?}");
+    // The left mirror ends where the back wall begins: a fifth from the left, and as much above.
+    let corner = at(glam::DVec3::new(room.left.x, 1.0, room.back.z));
+    assert!(corner.iter().all(|&side| (0.19..0.22).contains(&side)), "{corner:?}");
+    let [_, far] = room.poles().map(at);
+    assert!(far[0] > ball[0] && far[1] > ball[1], "its lower right edge: {far:?}");
+    let (focus, floor) = (at(room.focus()), at(room.floor));
+    assert!(focus[0] > 0.6 && (0.75..floor[1]).contains(&focus[1]), "above the floor: {focus:?}");
+    assert!(floor[0] > focus[0] && floor[1] > 0.85, "lower right: {floor:?}");
+    let back = at(room.back);
+    assert!(back[0] < ball[0] && back[1] < 0.35, "upper left of the ball: {back:?}");
+    let blank = blank(&loaded).unwrap();
+    let dark = Arrays { transient: vec![0.0; 3 * blank.pixels() * blank.bins], ..blank };
+    let events = room.events(&loaded.scene, &dark);
+    assert_eq!(events.len(), 10);
+    let texts: std::collections::BTreeSet<&str> =
+        events.iter().map(|event| event.seen.as_str()).collect();
+    assert!(texts.len() == 10 && texts.iter().all(|text| text.ends_with('.')), "{texts:?}");
+}
+
 #[test]
 fn close_ups_look_at_the_caustics_and_at_nothing_smooth() {
     let options = trial("close");
@@ -93,6 +126,7 @@ fn all_files_are_made() {
         "continuous emission",
         "agree where",
         "path, light and beams",
+        "the caustic, the brightest place",
         "Provenance",
     ] {
         assert!(page.contains(part), "{part}");
