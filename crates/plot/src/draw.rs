@@ -18,6 +18,18 @@ const COLOURS: [RGBColor; 7] = [
     BLACK,
 ];
 const FONT: &str = "sans-serif";
+/// How a chart looks where its reader's system is dark: for each colour that is drawn, the other.
+/// Readers without style sheets see the light one.
+const DARK: [(&str, &str); 8] = [
+    ("#FFFFFF", "#1a1e22"),
+    ("#000000", "#e8ebee"),
+    ("#DEDEDE", "#343c44"),
+    ("#C8C8C8", "#4a545e"),
+    ("#0072B2", "#6cb0ff"),
+    ("#D55E00", "#f59a52"),
+    ("#009E73", "#5fc98a"),
+    ("#CC79A7", "#dd8ce4"),
+];
 /// Opacity of bands.
 const SHADE: f64 = 0.2;
 
@@ -31,7 +43,29 @@ pub(crate) fn svg(chart: &Chart, size: (u32, u32)) -> Result<String, PlotError> 
     let mut text = String::new();
     draw(chart, (x, y), SVGBackend::with_string(&mut text, size))
         .map_err(|error| PlotError::Drawing(error.to_string()))?;
-    Ok(text)
+    Ok(with_dark(&text))
+}
+
+/// A text in place of a chart.
+pub(crate) fn message(text: &str, (width, height): (u32, u32)) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+    with_dark(&format!(
+        "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+         xmlns=\"http://www.w3.org/2000/svg\">\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"#FFFFFF\" stroke=\"none\"/>\n\
+         <text x=\"20\" y=\"40\" font-family=\"{FONT}\" fill=\"#000000\">{text}</text>\n</svg>\n"
+    ))
+}
+
+/// With the style sheet of [`DARK`]: rules outweigh the attributes that `plotters` writes.
+fn with_dark(svg: &str) -> String {
+    let rule = |(light, dark): (&str, &str)| {
+        format!("[fill=\"{light}\"]{{fill:{dark}}}[stroke=\"{light}\"]{{stroke:{dark}}}")
+    };
+    let rules = DARK.map(rule).concat();
+    let style = format!("\n<style>@media (prefers-color-scheme:dark){{{rules}}}</style>");
+    let (start, rest) = svg.split_at(svg.find('>').map_or(0, |end| end + 1));
+    [start, &style, rest].concat()
 }
 
 fn draw<'b>(chart: &Chart, (x, y): (Coordinate, Coordinate), page: SVGBackend<'b>) -> Drawn<'b> {
@@ -67,8 +101,8 @@ fn draw<'b>(chart: &Chart, (x, y): (Coordinate, Coordinate), page: SVGBackend<'b
     root.present()
 }
 
-fn draw_series<'b>(
-    frame: &mut Frame<'_, 'b>,
+fn draw_series<'a, 'b: 'a>(
+    frame: &mut Frame<'a, 'b>,
     chart: &Chart,
     series: &Series,
     colour: RGBColor,
@@ -93,10 +127,21 @@ fn draw_series<'b>(
     }
     if !series.name.is_empty() {
         // An empty series, for its entry in the legend.
-        frame
-            .draw_series(LineSeries::new(std::iter::empty(), line))?
-            .label(&series.name)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], line));
+        let entry =
+            frame.draw_series(LineSeries::new(std::iter::empty(), line))?.label(&series.name);
+        // As the series itself is drawn.
+        let dash = move |from: i32, to: i32| PathElement::new([(from, 0), (to, 0)], line);
+        let dot = move || Circle::new((9, 0), 3, colour.filled());
+        match series.mark {
+            Mark::Line => entry.legend(move |at| EmptyElement::at(at) + dash(0, 18)),
+            Mark::Dashes => {
+                entry.legend(move |at| EmptyElement::at(at) + dash(0, 7) + dash(12, 19))
+            }
+            Mark::Points => entry.legend(move |at| EmptyElement::at(at) + dot()),
+            Mark::LineAndPoints => {
+                entry.legend(move |at| EmptyElement::at(at) + dash(0, 18) + dot())
+            }
+        };
     }
     Ok(())
 }

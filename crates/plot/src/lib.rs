@@ -7,6 +7,9 @@
 //! Values that cannot be shown — NaN, infinities, and what is not positive on a logarithmic axis —
 //! leave a gap in their line. An axis without a range covers the finite values of all series.
 //!
+//! Charts are light, and dark where the reader's system is: a style sheet inside the SVG tells the other
+//! colours, also where a page shows it as an image.
+//!
 //! Not handled: bars, maps of colours, dates, more than one chart on a page.
 
 mod coordinate;
@@ -154,6 +157,11 @@ impl Chart {
         }
         draw::svg(self, size)
     }
+}
+
+/// A text where a chart would be, of the same looks: for data without anything to show.
+pub fn message(text: &str, size: (u32, u32)) -> String {
+    draw::message(text, size)
 }
 
 #[cfg(test)]

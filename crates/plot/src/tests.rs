@@ -62,3 +62,42 @@ fn a_single_point_and_huge_values_are_drawn() {
     let wide = Series::new("", Mark::Line, vec![(-1e308, -1e308), (1e308, 1e308)]);
     assert!(chart(vec![wide]).svg((640, 400)).is_ok());
 }
+
+/// Regression: a broken line had an unbroken one in the legend, and points had none of their looks.
+#[test]
+fn the_legend_shows_what_is_drawn() {
+    let drawn = |mark, name: &str| {
+        let series = Series { name: name.into(), ..decay(mark) };
+        let text = chart(vec![series]).svg((640, 400)).unwrap();
+        ["<polyline", "<circle"].map(|part| text.matches(part).count())
+    };
+    for (mark, lines, dots) in [
+        (Mark::Line, 1, 0),
+        (Mark::Dashes, 2, 0),
+        (Mark::Points, 0, 1),
+        (Mark::LineAndPoints, 1, 1),
+    ] {
+        let (with, without) = (drawn(mark, "decay"), drawn(mark, ""));
+        assert_eq!([with[0] - without[0], with[1] - without[1]], [lines, dots], "{mark:?}");
+    }
+}
+
+/// Regression: charts stayed white on dark pages.
+#[test]
+fn every_colour_of_a_chart_has_a_dark_one() {
+    // The sixth and seventh colours are bright enough on both.
+    let kept = ["#56B4E9", "#E69F00"];
+    let series = (0..7).map(|_| decay(Mark::LineAndPoints)).collect();
+    for text in [chart(series).svg((640, 400)).unwrap(), message("a < b & c", (640, 400))] {
+        let (style, rest) = text.split_once("</style>").unwrap();
+        assert!(text.starts_with("<svg ") && style.contains("prefers-color-scheme:dark"));
+        for name in ["fill", "stroke"] {
+            for part in rest.split(&format!(" {name}=\"")).skip(1) {
+                let colour = part.split('"').next().unwrap();
+                let told = style.contains(&format!("[{name}=\"{colour}\"]"));
+                assert!(told || kept.contains(&colour) || colour == "none", "{name} {colour}");
+            }
+        }
+    }
+    assert!(message("a < b & c", (640, 400)).contains("a &lt; b &amp; c"));
+}
