@@ -29,6 +29,8 @@ pub struct Method<'a> {
     /// Whether its errors are independent of the reference's. `false` if both were rendered from
     /// the same random numbers: then noise cannot be told from bias, and those numbers are left out.
     pub independent: bool,
+    /// Whether its cells are W m⁻² sr⁻¹. `false`: nobody knows their unit.
+    pub unit_known: bool,
     /// A sentence about it; may be empty.
     pub caption: String,
     /// How it was made, as pairs of name and value, in the order in which they are shown.
@@ -48,6 +50,7 @@ impl<'a> Method<'a> {
             pixel_errors: PixelErrors::default(),
             batches: None,
             independent: true,
+            unit_known: true,
             caption: String::new(),
             provenance: Vec::new(),
             command: None,

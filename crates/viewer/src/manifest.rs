@@ -7,7 +7,7 @@ use crate::comparison::{Comparison, Method};
 use crate::interval::standard_errors;
 use crate::metrics::{EPSILON, FrameCurves, Metrics};
 use crate::pack::{PackedMethod, Prediction, Stream, code};
-use crate::reduce::Factors;
+use crate::reduce::{Factors, edges_of_groups};
 
 /// All but the arrays.
 #[derive(Serialize)]
@@ -24,9 +24,11 @@ pub(crate) struct Manifest<'a> {
     rendered: Shape,
     factors: [usize; 2],
     edges: &'a [f64],
-    /// Edges of the results' bins, for `frames`.
+    /// Bins of the results in a group of `frames`.
+    curve_bins: usize,
+    /// Edges of those groups.
     /// `None`: they are `edges`.
-    rendered_edges: Option<&'a [f64]>,
+    curve_edges: Option<Vec<f64>>,
     code: Code,
     epsilon: f64,
     judged_label: Option<&'a str>,
@@ -70,6 +72,8 @@ struct MethodEntry<'a> {
     interval: Option<f64>,
     /// Whether its errors are independent of the reference's.
     independent: bool,
+    /// Whether its cells are W m⁻² sr⁻¹.
+    unit_known: bool,
     caption: &'a str,
     command: Option<&'a str>,
     provenance: &'a [(String, String)],
@@ -117,6 +121,10 @@ pub(crate) struct Numbers {
     judged_steady: Option<Metrics>,
 }
 
+/// Points of a curve over time: more than a chart has pixels. Results with more bins have points
+/// for groups of them.
+const CURVE_POINTS: usize = 1 << 12;
+
 /// What is computed from the results at their full size, once.
 pub(crate) struct Judgement {
     pub(crate) numbers: Option<Numbers>,
@@ -138,7 +146,8 @@ impl Judgement {
             judged_cube: judged.filter(|_| x.bins > 0).map(|judged| of_cube(r, Some(judged))),
             judged_steady: judged.map(|judged| Metrics::of_steady(x, r.arrays, Some(judged))),
         });
-        let frames = FrameCurves::new(x, reference.map(|reference| reference.arrays));
+        let group = x.bins.div_ceil(CURVE_POINTS).max(1);
+        let frames = FrameCurves::new(x, reference.map(|reference| reference.arrays), group);
         Self { numbers, frames }
     }
 }
@@ -185,6 +194,7 @@ pub(crate) fn manifest<'a>(
             batches: method.batches,
             interval: standard_errors(method.estimate().freedom()),
             independent: method.independent,
+            unit_known: method.unit_known,
             caption: &method.caption,
             command: method.command.as_deref(),
             provenance: &method.provenance,
@@ -198,6 +208,7 @@ pub(crate) fn manifest<'a>(
         })
         .collect();
     let rendered = comparison.first();
+    let curve_bins = judgements.first().map_or(1, |judgement| judgement.frames.group);
     let manifest = Manifest {
         title: &comparison.title,
         caption: &comparison.caption,
@@ -208,7 +219,9 @@ pub(crate) fn manifest<'a>(
         rendered: Shape::of(rendered),
         factors: [factors.pixels, factors.bins],
         edges: &first.opl_edges,
-        rendered_edges: (factors.bins > 1).then_some(&rendered.opl_edges),
+        curve_bins,
+        curve_edges: (factors.bins != curve_bins)
+            .then(|| edges_of_groups(&rendered.opl_edges, curve_bins)),
         code: Code {
             steps: code::STEPS,
             image_steps: code::IMAGE_STEPS,

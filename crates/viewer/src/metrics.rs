@@ -70,14 +70,16 @@ pub struct Metrics {
     pub bias_half: Option<Half>,
 }
 
-/// Errors bin by bin.
+/// Errors bin by bin, or by groups of bins.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FrameCurves {
-    /// Mean over pixels and channels.
+    /// Bins in a group; the last may have fewer.
+    pub group: usize,
+    /// Mean of a bin over pixels, channels and the bins of each group.
     pub mean: Vec<f64>,
-    /// NMSE of each bin; `None` where the reference is black, or there is none.
+    /// NMSE over the cells of each group; `None` where the reference is black, or there is none.
     pub nmse: Vec<Option<f64>>,
-    /// Relative difference of the sums of each bin.
+    /// Relative difference of the sums of each group.
     pub bias: Vec<Option<f64>>,
 }
 
@@ -295,12 +297,14 @@ impl Metrics {
 }
 
 impl FrameCurves {
-    /// Bin by bin, over all pixels and channels that are finite.
-    pub fn new(x: &Arrays, reference: Option<&Arrays>) -> Self {
-        let sums = sums_of_bins(x, reference.unwrap_or(x));
+    /// Over all pixels and channels that are finite, `group` bins together; 1 is bin by bin.
+    pub fn new(x: &Arrays, reference: Option<&Arrays>, group: usize) -> Self {
+        let group = group.max(1);
+        let sums = sums_of_groups(x, reference.unwrap_or(x), group);
         let judged = |value: Option<f64>| value.filter(|_| reference.is_some());
         let metrics: Vec<Metrics> = sums.iter().map(|sums| sums.metrics(1.0, None)).collect();
         Self {
+            group,
             mean: sums.iter().map(|sums| sums.x / sums.cells.max(1) as f64).collect(),
             nmse: metrics.iter().map(|metrics| judged(metrics.nmse)).collect(),
             bias: metrics.iter().map(|metrics| judged(metrics.bias)).collect(),
@@ -308,27 +312,28 @@ impl FrameCurves {
     }
 }
 
-/// Sums over all pixels, for each bin, in an order that no thread changes.
-fn sums_of_bins(x: &Arrays, r: &Arrays) -> Vec<Sums> {
+/// Sums over all pixels, for each group of bins, in an order that no thread changes.
+fn sums_of_groups(x: &Arrays, r: &Arrays, group: usize) -> Vec<Sums> {
     let size = x.bins * x.channels;
     if size == 0 {
         return Vec::new();
     }
+    let groups = x.bins.div_ceil(group);
     let chunk = x.pixels().div_ceil(64) * size;
     let cells = x.transient.par_chunks(chunk).zip(r.transient.par_chunks(chunk));
     let parts: Vec<Vec<Sums>> = cells
         .map(|(x_cells, r_cells)| {
-            let mut sums = vec![Sums::default(); x.bins];
+            let mut sums = vec![Sums::default(); groups];
             for (at, (&x_cell, &r_cell)) in x_cells.iter().zip(r_cells).enumerate() {
                 let (value, truth) = (f64::from(x_cell), f64::from(r_cell));
                 let pair = Pair { x: value, r: truth, variances: [0.0; 2] };
-                sums[at % size / x.channels].add(pair, 1.0);
+                sums[at % size / x.channels / group].add(pair, 1.0);
             }
             sums
         })
         .collect();
-    let all = |bin: usize| parts.iter().fold(Sums::default(), |sum, part| sum.merge(&part[bin]));
-    (0..x.bins).map(all).collect()
+    let all = |at: usize| parts.iter().fold(Sums::default(), |sum, part| sum.merge(&part[at]));
+    (0..groups).map(all).collect()
 }
 
 #[cfg(test)]

@@ -59,7 +59,9 @@ pub fn page(comparison: &Comparison<'_>) -> Result<(String, PageReport), ViewerE
     comparison.check()?;
     let judged = comparison.methods.iter().map(|method| Judgement::new(comparison, method));
     let judgements: Vec<Judgement> = judged.collect();
-    let bare = html(comparison, Factors::NONE, comparison.first(), &[], &judgements)?.len();
+    let bare =
+        html(comparison, Factors::NONE, &without_cells(comparison.first()), &[], &judgements)?;
+    let bare = bare.len();
     let too_small = |needed| ViewerError::Budget { needed, budget: comparison.budget_bytes };
     let room = comparison.budget_bytes.checked_sub(bare).ok_or_else(|| too_small(bare))? as f64;
     let mut smallest = bare;
@@ -86,22 +88,44 @@ pub fn page(comparison: &Comparison<'_>) -> Result<(String, PageReport), ViewerE
     Err(too_small(smallest))
 }
 
+/// The shape alone.
+fn without_cells(arrays: &Arrays) -> Arrays {
+    let Arrays { width, height, bins, channels, quantity, .. } = *arrays;
+    let (opl_edges, transient, variance) = (Vec::new(), Vec::new(), None);
+    let (before, after, steady) = (Vec::new(), Vec::new(), Vec::new());
+    Arrays {
+        width,
+        height,
+        bins,
+        channels,
+        quantity,
+        opl_edges,
+        transient,
+        variance,
+        before,
+        after,
+        steady,
+    }
+}
+
 fn cells(arrays: &Arrays) -> usize {
     arrays.pixels() * arrays.bins.max(1)
 }
 
-/// Bytes of the streams in the page, told from a few rows.
+/// Bytes of the streams and of the edges of bins in the page, told from a few rows.
 fn estimate(comparison: &Comparison<'_>, factors: Factors) -> Result<f64, ViewerError> {
     let rows = comparison.first().height.div_ceil(factors.pixels);
     let count = rows.min(SAMPLE_ROWS);
     let sample: Vec<usize> = (0..count).map(|i| (2 * i + 1) * rows / (2 * count)).collect();
-    let mut bytes = 0.0;
+    let (mut bytes, mut edges) = (0.0, 0.0);
     for method in &comparison.methods {
-        let part = pack(&reduce_rows(method.arrays, factors, method.pixel_errors, &sample))?;
+        let part = reduce_rows(method.arrays, factors, method.pixel_errors, &sample);
+        edges = serde_json::to_string(&part.opl_edges).map_or(0.0, |text| text.len() as f64);
+        let part = pack(&part)?;
         let sizes = part.streams().map(|stream| stream.bytes.len() as f64);
         bytes += sizes.sum::<f64>() * rows as f64 / count as f64;
     }
-    Ok(bytes * 4.0 / 3.0)
+    Ok(bytes * 4.0 / 3.0 + edges)
 }
 
 fn pack(arrays: &Arrays) -> Result<PackedMethod, ViewerError> {
@@ -205,6 +229,28 @@ mod tests {
         }
         comparison.budget_bytes = 10_000;
         assert!(matches!(page(&comparison), Err(ViewerError::Budget { budget: 10_000, .. })));
+    }
+
+    /// Regression: curves over all pixels, and edges of bins, were stored bin by bin as text: a page of
+    /// one pixel with very many bins had no room for anything else.
+    #[test]
+    fn one_pixel_with_a_million_bins_has_a_page() {
+        let bins = 1_000_000;
+        let mut arrays = with_error(cube(1, 1, bins, 1), 0.1);
+        for (at, edge) in arrays.opl_edges.iter_mut().enumerate() {
+            *edge = 1.0 + at as f64 / 3e5;
+        }
+        let reference = Method { is_reference: true, ..Method::new("r", "R", &arrays) };
+        let mut comparison =
+            Comparison::new("long", vec![Method::new("a", "A", &arrays), reference]);
+        for budget in [crate::DEFAULT_BUDGET, 1_000_000] {
+            comparison.budget_bytes = budget;
+            let (text, report) = page(&comparison).unwrap();
+            assert!(text.len() <= budget, "{} bytes", text.len());
+            let [1, 1, shown] = report.shown else { panic!("{report:?}") };
+            assert!((1000..=crate::reduce::LONGEST).contains(&shown), "{report:?}");
+            assert!(text.contains("\"curve_bins\":245,\"curve_edges\":["));
+        }
     }
 
     #[test]

@@ -15,6 +15,10 @@ use std::ops::Range;
 use rayon::prelude::*;
 use tpb_film::{Arrays, Quantity};
 
+/// No axis of a page is longer: a streak has a canvas with a pixel for each of its cells, and
+/// browsers draw none larger than 2^14 on a side.
+pub(crate) const LONGEST: usize = 1 << 14;
+
 /// By how much arrays are reduced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Factors {
@@ -33,12 +37,16 @@ impl Factors {
         self.pixels.saturating_mul(self.pixels).saturating_mul(self.bins)
     }
 
-    /// All that make sense for a shape, the gentlest first: no axis is reduced by more than is
+    /// All that make sense for a shape, the gentlest first: none leaves an axis longer than
+    /// [`LONGEST`], no axis is reduced by more than is
     /// needed, and pixels, which are looked at, are spared more than bins; what an axis without
     /// more to give leaves, the other takes. A few thousand at most, whatever the shape.
     pub(crate) fn all(arrays: &Arrays) -> Vec<Self> {
-        let longest = arrays.width.max(arrays.height);
-        let all_bins = arrays.bins.max(1);
+        let (side, all_bins) = (arrays.width.max(arrays.height), arrays.bins.max(1));
+        // What is needed whatever the budget; the rest goes on from there.
+        let needed = Self { pixels: side.div_ceil(LONGEST), bins: all_bins.div_ceil(LONGEST) };
+        let ends = (side, all_bins);
+        let (longest, all_bins) = (side.div_ceil(needed.pixels), all_bins.div_ceil(needed.bins));
         let balanced = |f: &Self| {
             let (least, most) = (f.pixels.min(f.bins), f.pixels.max(f.bins));
             let spent = |factor: usize, end: usize| factor == least && factor == end;
@@ -50,6 +58,10 @@ impl Factors {
             .filter(balanced)
             .collect();
         all.sort_by_key(|f| ((3 * f.pixels).max(2 * f.bins), f.cells()));
+        for f in &mut all {
+            f.pixels = (f.pixels * needed.pixels).min(ends.0);
+            f.bins = (f.bins * needed.bins).min(ends.1);
+        }
         all
     }
 }
@@ -85,20 +97,14 @@ pub(crate) fn reduce_rows(
 ) -> Arrays {
     let factors = Factors { pixels: factors.pixels.max(1), bins: factors.bins.max(1) };
     let blocks = Blocks { arrays, factors };
-    let edges = &arrays.opl_edges;
     let bins = arrays.bins.div_ceil(factors.bins);
-    let last = edges.len().saturating_sub(1);
     Arrays {
         width: blocks.width(),
         height: rows.len(),
         bins,
         channels: arrays.channels,
         quantity: arrays.quantity,
-        opl_edges: (0..=last)
-            .step_by(factors.bins)
-            .chain((!last.is_multiple_of(factors.bins)).then_some(last))
-            .filter_map(|edge| edges.get(edge).copied())
-            .collect(),
+        opl_edges: edges_of_groups(&arrays.opl_edges, factors.bins),
         transient: blocks.cube(rows, &arrays.transient, Cells::Values),
         variance: arrays
             .variance
@@ -108,6 +114,16 @@ pub(crate) fn reduce_rows(
         after: blocks.image(rows, &arrays.after),
         steady: blocks.image(rows, &arrays.steady),
     }
+}
+
+/// Edges of groups of bins.
+pub(crate) fn edges_of_groups(edges: &[f64], group: usize) -> Vec<f64> {
+    let last = edges.len().saturating_sub(1);
+    (0..=last)
+        .step_by(group)
+        .chain((!last.is_multiple_of(group)).then_some(last))
+        .filter_map(|edge| edges.get(edge).copied())
+        .collect()
 }
 
 /// What cells are, and so how they add up: within a pixel, over its block, and to a mean.
@@ -342,8 +358,13 @@ mod tests {
         for (width, bins) in [(100_000, 50_000), (1, 1 << 40), (1 << 30, 1 << 30)] {
             let all = of_shape(width, 1, bins);
             assert!(all.len() < 10_000, "{width} x {bins}: {}", all.len());
-            assert_eq!(all.first(), Some(&(1, 1)));
+            let first = (width.div_ceil(LONGEST), bins.div_ceil(LONGEST));
+            assert_eq!(all.first(), Some(&first));
             assert!(all.contains(&(width, bins)), "down to one cell");
+            let drawn = |f: &(usize, usize)| {
+                width.div_ceil(f.0) <= LONGEST && bins.div_ceil(f.1) <= LONGEST
+            };
+            assert!(all.iter().all(drawn), "{width} x {bins}");
         }
     }
 }

@@ -76,7 +76,7 @@ impl fmt::Display for Ruling {
         write!(
             f,
             "{} of {} pixels, within columns {} to {} and rows {} to {}, hold {:.1} % of the \
-             reference's sum r2: RMSE, NMSE and bias are theirs; relMSE, MAPE and SMAPE weigh all \
+             reference's Σr²: RMSE, NMSE and bias are theirs; relMSE, MAPE and SMAPE weigh all \
              cells alike",
             self.pixels,
             self.of,

@@ -66,6 +66,7 @@ impl Input {
     pub(super) fn method(&self, key: &str) -> Method<'_> {
         let mut method = Method::new(key, &self.label, &self.loaded.arrays);
         method.batches = self.batches();
+        method.unit_known = self.loaded.unit_known;
         method.caption = self.loaded.remarks.join("; ");
         method.provenance.push(("file".to_owned(), self.loaded.file.display().to_string()));
         if self.loaded.window_only && self.loaded.arrays.bins > 0 {

@@ -63,20 +63,32 @@ pub(super) struct Verdicts<'a> {
 /// Names of the columns.
 const COLUMNS: [&str; 8] = ["RMSE", "NMSE", "noise", "bias2", "relMSE", "MAPE", "SMAPE", "bias"];
 
+/// A number to so many digits; with a power of ten only where it is very small or very large.
+fn digits(value: f64, count: usize) -> String {
+    let size = value.abs();
+    if value != 0.0 && size.is_finite() && !(1e-3..1e5).contains(&size) {
+        return format!("{value:.*e}", count - 1);
+    }
+    let before = if value == 0.0 { 1.0 } else { size.log10().floor() + 1.0 };
+    format!("{value:.*}", (count as f64 - before).max(0.0) as usize)
+}
+
 fn number(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.3e}"))
+    value.map_or_else(|| "-".to_owned(), |value| digits(value, 4))
 }
 
 fn percent(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| format!("{:.3} %", 100.0 * value))
+    value.map_or_else(|| "-".to_owned(), |value| format!("{} %", digits(100.0 * value, 4)))
 }
 
 fn bias(metrics: &Metrics) -> String {
     let Some(bias) = metrics.bias else { return "-".to_owned() };
     let interval = metrics.bias_half.map_or_else(String::new, |half| {
-        format!(" +- {:.2e} % (at most {:.2e} %)", 100.0 * half.independent, 100.0 * half.bound)
+        let [independent, bound] = [half.independent, half.bound].map(|h| digits(100.0 * h, 2));
+        format!(" ± {independent} % (at most {bound} %)")
     });
-    format!("{:+.3} %{interval}", 100.0 * bias)
+    let sign = if bias > 0.0 { "+" } else { "" };
+    format!("{sign}{}{interval}", percent(Some(bias)))
 }
 
 fn cells(metrics: &Metrics) -> [String; 8] {
@@ -101,7 +113,9 @@ fn table(heading: &str, rows: &[(&str, &Metrics)]) -> String {
     let widths: Vec<usize> = COLUMNS
         .iter()
         .enumerate()
-        .map(|(i, name)| rows.iter().map(|row| row.1[i].len()).max().unwrap_or(0).max(name.len()))
+        .map(|(i, name)| {
+            rows.iter().map(|row| row.1[i].chars().count()).max().unwrap_or(0).max(name.len())
+        })
         .collect();
     let mut text = String::new();
     let mut line = |label: &str, cells: &[&str]| {
@@ -205,5 +219,43 @@ impl Verdicts<'_> {
             })),
         });
         format!("{report:#}\n")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_powers_of_ten_only_where_they_need_them() {
+        let texts = [
+            (0.0, "0.000"),
+            (4.57, "4.570"),
+            (-0.041_826, "-0.04183"),
+            (0.001, "0.001000"),
+            (9.994e-4, "9.994e-4"),
+            (12_345.6, "12346"),
+            (123_456.0, "1.235e5"),
+            (f64::INFINITY, "inf"),
+        ];
+        for (value, text) in texts {
+            assert_eq!(digits(value, 4), text);
+        }
+    }
+
+    /// Regression: half widths were `+- 4.57e0 %`.
+    #[test]
+    fn a_bias_is_told_with_its_interval() {
+        let half = tpb_viewer::Half { independent: 0.0457, bound: 0.523 };
+        let metrics =
+            Metrics { bias: Some(-0.001_99), bias_half: Some(half), ..Metrics::default() };
+        assert_eq!(bias(&metrics), "-0.1990 % ± 4.6 % (at most 52 %)");
+        let metrics = Metrics { bias: Some(0.5), ..Metrics::default() };
+        assert_eq!(bias(&metrics), "+50.00 %");
+        // Aligned, though the sign takes two bytes.
+        let table = table("all cells", &[("a", &metrics)]);
+        assert!(
+            table.lines().all(|line| line.chars().count() == table.lines().next().unwrap().len())
+        );
     }
 }

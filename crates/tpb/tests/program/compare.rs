@@ -224,7 +224,7 @@ fn pixels_that_rule_are_named_and_others_judged_alone() {
     for part in ["cells in mask", "steady in mask", "pixels in mask.npy: 399 of 400"] {
         assert!(text.contains(part), "{part} is missing in\n{text}");
     }
-    assert!(!text.contains("sum r2"), "no few of them rule:\n{text}");
+    assert!(!text.contains("Σr²"), "no few of them rule:\n{text}");
     let page = manifest(&folder.path().join("compare-truth-a.html"));
     assert_eq!(page["judged_label"], "pixels in mask.npy");
     assert_eq!(page["methods"][1]["numbers"]["judged_cube"]["nmse"], nmse);

@@ -63,7 +63,7 @@ function rangeOf(curves) {
 
 /** Columns for uPlot: lower edges (and the last upper one), then low, high, value of each method. */
 function chartData(v) {
-  const edges = state.chartKind === "pixel" ? v.edges : v.manifest.rendered_edges ?? v.edges;
+  const edges = state.chartKind === "pixel" ? v.edges : v.manifest.curve_edges ?? v.edges;
   chart.edges = edges;
   const curves = v.cubes.map((cube) => curveOf(v, cube));
   chart.range = rangeOf(curves);
@@ -172,13 +172,16 @@ function redrawTimeLine() {
   chart.plot?.redraw(false, state.chartZoom);
 }
 
-/** How wide the bands are, and from how many batches their standard errors. */
+/** How wide the bands are, and from how many batches their standard errors: said once for methods that are alike. */
 function bandsOf(v) {
-  return v.cubes.filter((cube) => cube.hasErrors).map(({ entry, interval }) => {
-    if (Number.isNaN(interval)) return `${entry.label} none, from ${entry.batches} batch`;
+  const widths = new Map();
+  for (const { entry, interval } of v.cubes.filter((cube) => cube.hasErrors)) {
     const from = entry.batches === null ? "of an unknown number of batches, taken as many" : `of ${entry.batches} batches`;
-    return `${entry.label} ±${digits(interval)} standard errors ${from}`;
-  }).join("; ");
+    const width = Number.isNaN(interval) ? `none, from ${entry.batches} batch` : `±${digits(interval)} standard errors ${from}`;
+    widths.set(width, [...(widths.get(width) ?? []), entry.label]);
+  }
+  const all = widths.size === 1 && v.cubes.every((cube) => cube.hasErrors);
+  return [...widths].map(([width, labels]) => (all ? width : `${labels.join(", ")} ${width}`)).join("; ");
 }
 
 function describeChart(v, data) {
@@ -201,6 +204,8 @@ function describeChart(v, data) {
     notes.push(`bands: 95 % by Student's t: ${bandsOf(v)}${reduced ? " (an upper bound: bins, pixels or channels that were added may err together)" : ""}`);
   }
   else if (kind === "pixel") notes.push("no bands: these results carry no variance (tpb render --variance keeps it)");
-  if (kind !== "pixel") notes.push("over all pixels and channels, at full size");
+  const group = v.manifest.curve_bins;
+  if (kind !== "pixel") notes.push(`over all pixels and channels, at full size${group > 1 ? `, ${group} bins together` : ""}`);
+  if (kind === "mean") notes.push(v.unit);
   byId("chart-note").textContent = notes.join(" · ");
 }

@@ -89,7 +89,7 @@ function syncControls(v) {
   }
   byId("display-note").textContent = v.view.colour
     ? `0 EV: ${state.follow && v.view.name === "frame" ? "99 % of this frame's lit pixels" : "nearly all lit cells"} of ${v.leader.entry.label} are below white; the same for all methods. Curve ${state.curve}: ${CURVES[state.curve].label}; then sRGB.`
-    : v.view.judges ? `ε = ${digits(v.view.name === "error" ? cubeEpsilon(v) : steadyEpsilon(v))} ${v.unit}: 1 % of the mean of the reference's lit ${v.view.name === "error" ? "cells" : "pixels"}. Of luminance.` : "Pixels without light are black.";
+    : v.view.judges ? `ε = ${v.view.name === "error" ? v.withUnit(digits(cubeEpsilon(v)), v.unit) : v.withUnit(digits(steadyEpsilon(v)), v.imageUnit)}: 1 % of the mean of the reference's lit ${v.view.name === "error" ? "cells" : "pixels"}. Of luminance.` : "Pixels without light are black.";
 }
 
 /** Shows a method, if there is one of that number. */

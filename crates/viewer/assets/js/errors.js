@@ -111,5 +111,5 @@ function errorScale(viewer, error) {
     for (let pixel = 0; pixel < cube.pixels; pixel++) values.push(error(cube, pixel));
     high = Math.max(high, percentile(values, 0.99));
   }
-  return { map: "heat", low: 0, high: high || 1, label: `${label} [${viewer.unit}]` };
+  return { map: "heat", low: 0, high: high || 1, label: `${label} [${viewer.view.name === "error" ? viewer.unit : viewer.imageUnit}]` };
 }

@@ -9,7 +9,15 @@ class Viewer {
     /** Whom exposure and scales are told from. */
     this.leader = this.reference ?? cubes[0];
     this.energies = manifest.quantity === "bin_energy";
-    this.unit = this.energies ? "W m⁻² sr⁻¹ per bin" : "W m⁻² sr⁻¹";
+    const unknown = cubes.filter(({ entry }) => !entry.unit_known).map(({ entry }) => entry.label);
+    this.unitKnown = unknown.length < cubes.length;
+    const unit = (text) => {
+      if (!this.unitKnown) return "unit unknown";
+      return unknown.length ? `${text}, if that is the unit of ${unknown.join(", ")}` : text;
+    };
+    /** Of the cells of the cube, and of the images beside it. */
+    this.unit = unit(this.energies ? "W m⁻² sr⁻¹ per bin" : "W m⁻² sr⁻¹");
+    this.imageUnit = unit("W m⁻² sr⁻¹");
     this.views = viewsFor(this);
   }
 
@@ -31,6 +39,11 @@ class Viewer {
     const [low, high] = [edges[bin], edges[bin + 1]];
     if (!this.manifest.timed) return this.time.text(low);
     return this.time.text(this.energies ? 0.5 * (low + high) : high);
+  }
+
+  /** A value with its unit, if that is known. */
+  withUnit(text, unit) {
+    return this.unitKnown ? `${text} ${unit}`.trim() : text;
   }
 
   /** Columns, rows or bins of the result that a shown one stands for, from 0: "7", or "14–15" of a reduced cube. */

@@ -41,11 +41,18 @@ function drawReadout(v) {
     ...(errors ? [element("th", { text: v.channels === 3 ? "± 95 % (lum.)" : "± 95 %", scope: "col", className: "number" })] : []),
   ]);
   const body = rows.map(({ cube, index, parts, error }) => element("tr", { className: index === state.method ? "current" : "" }, [
-    element("th", { scope: "row" }, [swatch(cube), document.createTextNode(cube.entry.label)]),
+    element("th", { scope: "row" }, named(cube)),
     ...parts.map((text) => element("td", { text, className: "number" })),
     ...(errors ? [element("td", { text: error, className: "number" })] : []),
   ]));
   byId("readout").replaceChildren(element("thead", {}, [header]), element("tbody", {}, body));
+}
+
+/** A label after its colour; no line breaks between them. */
+function named(cube, label = cube.entry.label) {
+  const [first, ...others] = label.split(" ");
+  const start = element("span", { className: "whole" }, [swatch(cube), document.createTextNode(first)]);
+  return [start, document.createTextNode(others.map((word) => ` ${word}`).join(""))];
 }
 
 /** The colour of a method's curves. */

@@ -173,7 +173,7 @@ function greyScale(v) {
     const x = log ? from * (to / from) ** (i / 255) : from + ((to - from) * i) / 255;
     map.fill(255 * encodeSrgb(grey(x)), 3 * i, 3 * i + 3);
   }
-  return { map, low: from * white, high: to * white, log, label: `radiance [${v.view.unit(v)}]` };
+  return { map, low: from * white, high: to * white, log, label: `${v.unitKnown ? "radiance" : "value"} [${v.view.unit(v)}]` };
 }
 
 /** The bar that tells what colours mean. */
@@ -206,7 +206,7 @@ function describe(v, brightest, scale) {
   const exposure = v.view.colour
     ? `exposure ${state.exposure >= 0 ? "+" : "−"}${Math.abs(state.exposure)} stops, ${state.curve} tone curve`
     : `colours from ${(scale.text ?? digits)(scale.low)} to ${(scale.text ?? digits)(scale.high)}`;
-  const text = scale?.text ?? ((value) => `${digits(value)} ${v.view.unit(v)}`.trim());
+  const text = scale?.text ?? ((value) => v.withUnit(digits(value), v.view.unit(v)));
   const most = v.view.colour ? "brightest cell" : "largest value";
   const at = v.view.place(v, brightest.x, brightest.y);
   const where = v.view.kind === "image"

@@ -32,7 +32,7 @@ function numberRows(v, label, which) {
     element("th", { text: label, colspan: String(COLUMNS.length + 1), scope: "colgroup" }),
   ]);
   const rows = judged.map((cube, i) => element("tr", {}, [
-    element("th", { scope: "row" }, [swatch(cube), document.createTextNode(cube.entry.label)]),
+    element("th", { scope: "row" }, named(cube)),
     ...COLUMNS.map(([, , size, text], column) => element("td", {
       className: size(metrics[i]) === best[column] ? "number best" : "number", text: text(metrics[i]),
     })),
@@ -72,17 +72,20 @@ function drawNumbers(v) {
   byId("numbers-note").replaceChildren(...notes.map((text) => element("p", { text })));
 }
 
+/** Names of options do not break after their first hyphen. */
+const unbroken = (text) => text.replaceAll("--", "-\u2060-");
+
 /** What the maker of the page has to say. */
 function drawNotes(v) {
   byId("notes-section").hidden = v.manifest.notes.length === 0;
-  byId("notes").replaceChildren(...v.manifest.notes.map((text) => element("li", { text })));
+  byId("notes").replaceChildren(...v.manifest.notes.map((text) => element("li", { text: unbroken(text) })));
 }
 
 /** A card for each result: what it is, how it was made, the command that repeats it. */
 function drawProvenance(v) {
   const card = (cube) => {
     const { label, caption, provenance, command, reference } = cube.entry;
-    const parts = [element("h3", {}, [swatch(cube), document.createTextNode(reference ? `${label} (reference)` : label)])];
+    const parts = [element("h3", {}, named(cube, reference ? `${label} (reference)` : label))];
     if (caption) parts.push(element("p", { text: caption }));
     if (provenance.length) {
       parts.push(element("dl", {}, provenance.flatMap(([name, value]) => [element("dt", { text: name }), element("dd", { text: value })])));
@@ -100,13 +103,16 @@ function drawPacking(v) {
   const [pixels, bins] = factors;
   const parts = [pixels > 1 ? `means over ${pixels} × ${pixels} pixels` : "", bins > 1 ? `sums over ${bins} bins` : ""].filter(Boolean);
   const shown = parts.length
-    ? `Shown: ${size(shape)} of ${size(rendered)} rendered, as exact ${parts.join(" and ")}, to keep the page small; error numbers and curves over all pixels are those of the full size.`
+    ? `Shown: ${size(shape)} of ${size(rendered)} rendered, as exact ${parts.join(" and ")}, to keep the page small; error numbers and curves over all pixels are those of the full size${v.manifest.curve_bins > 1 ? `, these for groups of ${v.manifest.curve_bins} bins` : ""}.`
     : `Shown: all ${size(shape)} that were rendered.`;
   const counted = v.bins > 0 ? "Bins, columns and rows count from 0, as in the arrays." : "Columns and rows count from 0, as in the arrays.";
+  const when = v.bins === 0 || !v.manifest.timed ? "" : v.energies
+    ? " A frame is named by the middle of its bin of time."
+    : " A frame is the radiance at the upper edge of its bin, and is named by that time.";
   const step = (steps) => digits(100 * (2 ** (0.5 / steps) - 1), 2);
   const stored = `Stored on a logarithmic scale: cells within ±${step(code.steps)} %, images within ±${step(code.image_steps)} %, standard errors within ±${step(code.error_steps)} %; zero is exact.`;
   byId("packing").replaceChildren(
-    element("p", { text: `${shown} ${counted}`, id: "shown" }),
+    element("p", { text: `${shown} ${counted}${when}`, id: "shown" }),
     element("p", { text: stored }),
     element("p", { text: `Page by ${program}, with uPlot 1.6.32 (MIT). It asks the network for nothing.` }),
   );

@@ -72,7 +72,7 @@ const VIEWS = [
       error: (v, cube, x, y) => cube.readingError(state.bin, y * v.width + x, "luminance"),
     }),
   imageView("steady", "Steady", (v, cube, pixel, out) => readImage(cube, "steady", pixel, out),
-    (v) => imageWhite(v.leader, "steady"), { unit: () => "W m⁻² sr⁻¹" }),
+    (v) => imageWhite(v.leader, "steady"), { unit: (v) => v.imageUnit }),
   {
     name: "xt", label: "x–t", kind: "xt", colour: true, timed: true,
     size: (v) => ({ width: v.width, height: v.bins, aspect: (0.75 * v.bins) / v.width }),
@@ -105,9 +105,9 @@ const VIEWS = [
   mapView("steady-error", "Steady error", (v, cube, pixel) => steadyError(v, cube, pixel),
     (v) => errorScale(v, (cube, pixel) => steadyError(v, cube, pixel)), { judges: true }),
   imageView("before", "Before", (v, cube, pixel, out) => readImage(cube, "before", pixel, out),
-    (v) => imageWhite(v.leader, "before"), { timed: true, hint: "light that arrived before the window" }),
+    (v) => imageWhite(v.leader, "before"), { timed: true, unit: (v) => v.imageUnit, hint: "light that arrived before the window" }),
   imageView("after", "After", (v, cube, pixel, out) => readImage(cube, "after", pixel, out),
-    (v) => imageWhite(v.leader, "after"), { timed: true, hint: "light that arrived after the window" }),
+    (v) => imageWhite(v.leader, "after"), { timed: true, unit: (v) => v.imageUnit, hint: "light that arrived after the window" }),
 ];
 
 /** The views that these results have. */

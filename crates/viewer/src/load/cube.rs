@@ -12,10 +12,14 @@ use crate::ViewerError;
 /// What a cube's file must hold.
 const WANTED: &str = "a cube is (rows, columns, bins) or (rows, columns, bins, channels)";
 
+/// Arrays that go with a cube, and are none.
+const BESIDE: [&str; 8] =
+    ["steady", "before", "after", "variance", "opl_edges", "time_edges", "batches", "mask"];
+
 /// The cube of a `.npy` file.
 pub(super) fn of_npy(path: &Path) -> Result<Loaded, ViewerError> {
     let arrays = arrays(path, "the array", npy::of_file(path)?, Quantity::BinEnergy)?;
-    Ok(Loaded { window_only: true, ..Loaded::new(path, arrays, false) })
+    Ok(Loaded { window_only: true, unit_known: false, ..Loaded::new(path, arrays, false) })
 }
 
 /// The cube of an archive with these arrays.
@@ -45,7 +49,8 @@ pub(super) fn of_npz(path: &Path, names: &[String]) -> Result<Loaded, ViewerErro
         arrays.variance = Some(values);
     }
     let batches = batches(path, names)?;
-    Ok(Loaded { window_only: true, batches, ..Loaded::new(path, arrays, timed) })
+    let loaded = Loaded::new(path, arrays, timed);
+    Ok(Loaded { window_only: true, unit_known: false, batches, ..loaded })
 }
 
 /// From how many independent runs the variance was estimated, if the archive tells.
@@ -78,7 +83,13 @@ pub(super) fn mask(path: &Path) -> Result<([usize; 2], Vec<bool>), ViewerError> 
         let reason = format!("has the shape {:?}; a mask is (rows, columns)", array.shape);
         return Err(ViewerError::cube(path, reason));
     };
-    Ok(([height, width], array.into_f64().into_iter().map(|value| value != 0.0).collect()))
+    let values = array.into_f64();
+    if let Some(pixel) = values.iter().position(|value| value.is_nan()) {
+        let (row, column) = (pixel / width, pixel % width);
+        let reason = format!("is not a number (NaN) at row {row}, column {column}, from 0");
+        return Err(ViewerError::cube(path, reason));
+    }
+    Ok(([height, width], values.into_iter().map(|value| value != 0.0).collect()))
 }
 
 /// Which array is the cube.
@@ -86,15 +97,19 @@ fn choose<'a>(path: &Path, names: &'a [String]) -> Result<&'a str, ViewerError> 
     if let Some(known) = names.iter().find(|name| *name == "transient" || *name == "radiance") {
         return Ok(known);
     }
-    let mut cubes = Vec::new();
-    for name in names {
-        if matches!(npy::dimensions(path, name)?, Some(3 | 4)) {
-            cubes.push(name.as_str());
+    let (mut cubes, mut broken) = (Vec::new(), None);
+    for name in names.iter().filter(|name| !BESIDE.contains(&name.as_str())) {
+        match npy::member(path, name) {
+            Ok(member) if matches!(member.dimensions, 3 | 4) => cubes.push(name.as_str()),
+            Ok(_) => {}
+            Err(error) => broken = broken.or(Some(error)),
         }
     }
-    match cubes[..] {
-        [only] => Ok(only),
-        [] => Err(ViewerError::cube(
+    match (&cubes[..], broken) {
+        (&[only], _) => Ok(only),
+        // It may be the cube.
+        ([], Some(error)) => Err(error),
+        ([], None) => Err(ViewerError::cube(
             path,
             format!("has no cube among its arrays ({}); {WANTED}", names.join(", ")),
         )),

@@ -3,7 +3,7 @@
 //! | input | what is read |
 //! | --- | --- |
 //! | a result folder | its `transient.npz` |
-//! | `.npz` of ours | all arrays |
+//! | `.npz` of ours: `steady`, with `before` and `after` or alone | all arrays |
 //! | `.npz` of others | the cube `transient`, `radiance`, or the only array of 3 or 4 dimensions; if there: `opl_edges` \[m\] or `time_edges` \[s\], `variance`, `batches` (from how many independent runs the variance is) |
 //! | `.npy` | the cube |
 //!
@@ -44,6 +44,8 @@ pub struct Loaded {
     /// Whether the steady image is made of the bins, for want of what arrives outside the window:
     /// their sum or, of continuous emission, the radiance at the last edge.
     pub window_only: bool,
+    /// Whether the unit of the cells is ours, W m⁻² sr⁻¹: no other program's is known.
+    pub unit_known: bool,
     /// From how many independent batches the variance is, if the file tells.
     pub batches: Option<u64>,
     /// What the reader should know: made-up axes, negative cells, cells that are not finite.
@@ -57,6 +59,7 @@ impl Loaded {
             arrays,
             timed,
             window_only: false,
+            unit_known: true,
             batches: None,
             remarks: Vec::new(),
         };
@@ -127,12 +130,28 @@ pub fn load(path: &Path) -> Result<Loaded, ViewerError> {
         return Err(ViewerError::cube(&file, reason));
     }
     let names = npy::names(&file)?;
-    let has = |name: &str| names.iter().any(|n| n == name);
-    let ours = has("steady") && (!has("transient") && !has("radiance") || has("before"));
-    if ours {
+    if is_ours(&file, &names)? {
         return Ok(Loaded::new(&file, Arrays::read_npz(&file)?, true));
     }
     cube::of_npz(&file, &names)
+}
+
+/// The arrays of our archives.
+const OURS: [&str; 8] =
+    ["transient", "radiance", "variance", "opl_edges", "time_edges", "before", "after", "steady"];
+
+/// Whether an archive of these arrays is one of ours: it has a steady image, nothing that we do not
+/// write, and either images of what arrives outside the window or, of a steady film, nothing else.
+fn is_ours(file: &Path, names: &[String]) -> Result<bool, ViewerError> {
+    let has = |name: &str| names.iter().any(|n| n == name);
+    if !has("steady") || !names.iter().all(|name| OURS.contains(&name.as_str())) {
+        return Ok(false);
+    }
+    if let [_] = names {
+        let member = npy::member(file, "steady")?;
+        return Ok(member.is_double && member.dimensions == 3);
+    }
+    Ok(has("before") || has("after"))
 }
 
 /// Whether a file starts with some bytes.
@@ -143,7 +162,7 @@ fn starts_with(file: &Path, magic: &[u8]) -> Result<bool, ViewerError> {
     Ok(start == magic)
 }
 
-/// Reads which pixels count, row by row: those where a (rows, columns) array is not 0. The array is
+/// Reads which pixels count, row by row: those where a (rows, columns) array is not 0; NaN is an error. The array is
 /// that of a `.npy` file, or `mask` or the only one of a `.npz` file.
 ///
 /// # Errors

@@ -212,12 +212,29 @@ pub(super) fn of_member(path: &Path, name: &str) -> Result<Array, ViewerError> {
     read(member, length).map_err(broken)
 }
 
-/// The number of dimensions of an array of an archive; `None` if it holds no array.
-pub(super) fn dimensions(path: &Path, name: &str) -> Result<Option<usize>, ViewerError> {
+/// What a member of an archive says of itself.
+pub(super) struct Member {
+    /// The number of its dimensions.
+    pub(super) dimensions: usize,
+    /// Whether it holds numbers of 64 bits, as images of ours do.
+    pub(super) is_double: bool,
+}
+
+/// The header of an array of an archive.
+///
+/// # Errors
+/// [`ViewerError::Cube`], which names the array, if it cannot be read.
+pub(super) fn member(path: &Path, name: &str) -> Result<Member, ViewerError> {
     let mut archive = archive(path)?;
-    let member = archive.by_name(&format!("{name}.npy"));
-    let member = member.map_err(|e| ViewerError::cube(path, format!("`{name}`: {e}")))?;
-    Ok(NpyHeader::from_reader(member).ok().map(|header| header.shape().len()))
+    let broken =
+        |reason: String| ViewerError::cube(path, format!("`{name}` cannot be read: {reason}"));
+    let bytes = archive.by_name(&format!("{name}.npy")).map_err(|e| broken(e.to_string()))?;
+    let header = NpyHeader::from_reader(bytes).map_err(|e| broken(e.to_string()))?;
+    let is_double = match header.dtype() {
+        DType::Plain(kind) => (kind.type_char(), kind.size_field()) == (TypeChar::Float, 8),
+        _ => false,
+    };
+    Ok(Member { dimensions: header.shape().len(), is_double })
 }
 
 #[cfg(test)]

@@ -141,7 +141,7 @@ fn masks_say_which_pixels_count() {
     let expected = [true, false, true, true, false, false];
     let flags = npy("|b1", false, "(2, 3)", &[1, 0, 1, 1, 0, 0]);
     assert_eq!(of("mask.npy", &flags).unwrap(), expected);
-    let floats = [0.5_f32, 0.0, -1.0, f32::NAN, 0.0, 0.0].map(f32::to_le_bytes).concat();
+    let floats = [0.5_f32, 0.0, -1.0, f32::INFINITY, 0.0, 0.0].map(f32::to_le_bytes).concat();
     assert_eq!(of("mask.npy", &npy("<f4", false, "(2, 3)", &floats)).unwrap(), expected);
     let other = npy("|u1", false, "(1,)", &[3]);
     for members in [&[("only", &flags)][..], &[("mask", &flags), ("other", &other)]] {
@@ -153,6 +153,10 @@ fn masks_say_which_pixels_count() {
     let turned = told(of("mask.npy", &npy("|b1", false, "(3, 2)", &[1; 6])));
     assert!(turned.contains("(3, 2)") && turned.contains("(2, 3)"), "{turned}");
     assert!(told(of("mask.npy", &npy("|b1", false, "(2, 3)", &[0; 6]))).contains("no pixel"));
+    // Regression: NaN counted as 1.
+    let odd = [1.0_f32, 0.0, 1.0, 0.0, f32::NAN, 0.0].map(f32::to_le_bytes).concat();
+    let odd = told(of("mask.npy", &npy("<f4", false, "(2, 3)", &odd)));
+    assert!(odd.contains("mask.npy") && odd.contains("row 1, column 1"), "{odd}");
     assert!(told(of("mask.npy", &npy("|b1", false, "(6,)", &[1; 6]))).contains("(rows, columns)"));
 }
 
@@ -209,6 +213,41 @@ fn broken_files_are_errors_that_name_them() {
     assert!(file("cut.npz", b"PK\x03\x04 and nothing").contains("cut.npz"));
     assert!(error(&folder.path().join("nowhere.npy")).contains("nowhere.npy"));
     assert!(error(folder.path()).contains("transient.npz"));
+}
+
+/// Regression: `steady` made an archive ours, and a damaged member was no array at all.
+#[test]
+fn a_steady_image_alone_makes_no_archive_ours_and_damage_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let singles = |count: usize| [1.0_f32.to_le_bytes()].concat().repeat(count);
+    let steady = npy("<f4", false, "(2, 2, 3)", &singles(12));
+    let sums = npy("<f4", false, "(2, 2)", &singles(4));
+    for members in [&[("steady", &steady)][..], &[("steady", &steady), ("sums", &sums)]] {
+        let message = error(&packed(folder.path(), "other.npz", members));
+        assert!(message.contains("has no cube among its arrays (steady"), "{message}");
+    }
+    // A cube beside it is found, by any name, and its unit is not known.
+    let cube_of = npy("<f4", false, "(2, 2, 5)", &singles(20));
+    let path = packed(folder.path(), "other.npz", &[("data", &cube_of), ("steady", &steady)]);
+    let loaded = load(&path).unwrap();
+    assert_eq!((loaded.arrays.bins, loaded.unit_known), (5, false));
+    // Ours, with and without a time axis.
+    let ours = folder.path().join("ours.npz");
+    let mut arrays = cube(2, 2, 3, 1);
+    for _ in 0..2 {
+        arrays.write_npz(&ours).unwrap();
+        let loaded = load(&ours).unwrap();
+        assert!(loaded.arrays == arrays && loaded.unit_known);
+        (arrays.bins, arrays.opl_edges) = (0, Vec::new());
+        (arrays.transient, arrays.before, arrays.after) = (Vec::new(), Vec::new(), Vec::new());
+    }
+
+    let damaged = b"\x93NUMPY\x01\x00\x10\x00no header at all".to_vec();
+    let message = error(&packed(folder.path(), "odd.npz", &[("a", &damaged), ("sums", &sums)]));
+    assert!(message.contains("odd.npz: `a` cannot be read"), "{message}");
+    // Not needed where there is a whole cube.
+    let both = packed(folder.path(), "odd.npz", &[("a", &damaged), ("data", &cube_of)]);
+    assert_eq!(load(&both).unwrap().arrays.bins, 5);
 }
 
 #[test]

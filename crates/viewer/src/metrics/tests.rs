@@ -104,7 +104,7 @@ fn curves_are_the_numbers_of_each_bin() {
     let r = cube(5, 4, 6, 3);
     let mut x = r.clone();
     x.transient.iter_mut().for_each(|cell| *cell *= 1.1);
-    let curves = FrameCurves::new(&x, Some(&r));
+    let curves = FrameCurves::new(&x, Some(&r), 1);
     for bin in 0..6 {
         let lit = r.transient.chunks_exact(3).skip(bin).step_by(6).any(|cell| cell[0] > 0.0);
         assert_eq!(curves.nmse[bin].is_some(), lit);
@@ -113,5 +113,32 @@ fn curves_are_the_numbers_of_each_bin() {
             assert!((curves.bias[bin].unwrap() - 0.1).abs() < 1e-6);
         }
     }
-    assert!(FrameCurves::new(&x, None).nmse.iter().all(Option::is_none));
+    assert!(FrameCurves::new(&x, None, 1).nmse.iter().all(Option::is_none));
+}
+
+#[test]
+fn curves_of_groups_are_the_numbers_over_their_cells() {
+    let r = cube(3, 2, 7, 3);
+    let mut x = r.clone();
+    x.transient.iter_mut().enumerate().for_each(|(at, cell)| *cell *= 1.0 + (at % 5) as f32);
+    let curves = FrameCurves::new(&x, Some(&r), 3);
+    assert_eq!((curves.group, curves.mean.len()), (3, 3));
+    for (at, bins) in [0..3, 3..6, 6..7].into_iter().enumerate() {
+        let cells = || {
+            let bin_of = |cell: usize| cell / 3 % 7;
+            (0..r.transient.len()).filter(|&cell| bins.contains(&bin_of(cell))).collect::<Vec<_>>()
+        };
+        let of = |arrays: &Arrays, cell: usize| f64::from(arrays.transient[cell]);
+        let sum = |f: &dyn Fn(usize) -> f64| cells().into_iter().map(f).sum::<f64>();
+        let nmse = sum(&|c| (of(&x, c) - of(&r, c)).powi(2)) / sum(&|c| of(&r, c).powi(2));
+        let bias = sum(&|c| of(&x, c)) / sum(&|c| of(&r, c)) - 1.0;
+        let mean = sum(&|c| of(&x, c)) / cells().len() as f64;
+        for (found, exact) in [
+            (curves.nmse[at].unwrap(), nmse),
+            (curves.bias[at].unwrap(), bias),
+            (curves.mean[at], mean),
+        ] {
+            assert!((found / exact - 1.0).abs() < 1e-9, "group {at}: {found}, {exact}");
+        }
+    }
 }

@@ -8,6 +8,7 @@ mod looks;
 mod pictures;
 mod scene;
 mod values;
+mod words;
 
 use std::path::Path;
 
