@@ -1,6 +1,6 @@
 //! Curves of a comparison as SVG.
 
-use tpb_plot::{Axis, Chart, Mark, PlotError, Series};
+use tpb_plot::{Axis, Chart, Mark, PlotError, Series, message};
 
 use super::compare::{Comparison, Part};
 use crate::error::{Result, ValidationError};
@@ -89,18 +89,11 @@ fn chart(title: &str, what: &str, series: Vec<Series>) -> Result<String> {
 /// A chart of whatever there is; one without any value says so.
 fn draw(chart: &Chart) -> Result<String> {
     match chart.svg(SIZE) {
-        Err(PlotError::Empty { .. }) => Ok(nothing(&chart.title)),
+        Err(PlotError::Empty { .. }) => {
+            Ok(message(&format!("{}: nothing is resolved", chart.title), SIZE))
+        }
         other => other.map_err(|error| ValidationError::unusable("chart", error)),
     }
-}
-
-fn nothing(title: &str) -> String {
-    let (w, h) = SIZE;
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\">\
-         <rect width=\"{w}\" height=\"{h}\" fill=\"white\"/>\
-         <text x=\"20\" y=\"40\" font-family=\"sans-serif\">{title}: nothing is resolved</text></svg>"
-    )
 }
 
 #[cfg(test)]

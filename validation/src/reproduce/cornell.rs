@@ -102,7 +102,12 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<CornellResult> {
     };
     write_json(&out.join("result.json"), &result)?;
     watch.begin(PAGES_STEP)?;
-    pages::write(&out, &result, &Shown { reference: &reference, contested: &contested })?;
+    let command = |index: usize| {
+        let method = &contested.comparison.methods[index];
+        options.render_command(NAME, method, &contested.runs[index][0])
+    };
+    let commands = [command(0)?, command(1)?];
+    pages::write(&out, &result, &Shown { reference: &reference, contested: &contested, commands })?;
     contest.clear()?;
     clear(&out.join(PRECISE_FOLDER))?;
     watch.tell(&format!("  wrote {}", out.join("index.html").display()));
@@ -113,6 +118,8 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<CornellResult> {
 struct Shown<'a> {
     reference: &'a Path,
     contested: &'a Contested,
+    /// What makes the first replicate of each method again.
+    commands: [String; 2],
 }
 
 impl Shown<'_> {

@@ -167,7 +167,11 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<MirrorsResult> {
     };
     write_json(&out.join("result.json"), &result)?;
     watch.begin(PAGES_STEP)?;
-    pages::write(&out, &result, arrays, &about_caustics)?;
+    let made = pages::MadeBy {
+        run: replicate,
+        command: options.render_command(NAME, methods[0].name(), replicate)?,
+    };
+    pages::write(&out, &result, arrays, &made, &about_caustics)?;
     race.clear()?;
     for kept in [CAUSTICS_FOLDER, RACE_FOLDER] {
         clear(&out.join(kept))?;

@@ -45,8 +45,10 @@ use std::time::Duration;
 
 use serde::Serialize;
 use tpb_film::atomic_write;
+use tpb_optics::opl::seconds_from_opl;
 use tpb_scene::load::{LoadedScene, Override, load_scene};
 
+use self::race::Replicate;
 use crate::error::{Result, ValidationError};
 use crate::suite::Circumstances;
 
@@ -109,6 +111,24 @@ impl Options {
     pub fn load(&self, name: &str, changes: &[&str]) -> Result<LoadedScene> {
         let path = self.scenes.join(format!("{name}.json"));
         load(&path, &self.changes(&path, changes)?)
+    }
+
+    /// The command that makes one run of a scene again, bit for bit: with its passes, not its time.
+    /// Races use default options, and so does it. To be given in the repository's folder.
+    pub(crate) fn render_command(
+        &self,
+        scene: &str,
+        method: &str,
+        run: &Replicate,
+    ) -> Result<String> {
+        let path = self.scenes.join(format!("{scene}.json"));
+        let passes = run.spent.last().map_or(0, |spent| spent.passes);
+        let seed = run.seed;
+        let mut words = vec![format!(
+            "tpb render scenes/{scene}.json --method {method} --passes {passes} --seed {seed}"
+        )];
+        words.extend(self.changes(&path, &[])?.into_iter().map(|change| format!("--set {change}")));
+        Ok(words.join(" "))
     }
 
     /// Cells of a scene's film.
@@ -183,6 +203,19 @@ pub(crate) fn clear(path: &Path) -> Result<()> {
     }
 }
 
+/// What names a frame: its bin, and a time of it as OPL and in ns, with decimals enough to tell
+/// neighbours apart. The time is the middle of the bin, as in viewers and videos; with `at_end` its
+/// upper edge, as for radiance of continuous emission.
+pub(crate) fn frame_name(edges: &[f64], bin: usize, at_end: bool) -> String {
+    let (low, high) = (edges[bin], edges[bin + 1]);
+    let opl = if at_end { high } else { 0.5 * (low + high) };
+    let nanoseconds = |opl: f64| 1e9 * seconds_from_opl(opl);
+    let decimals = |width: f64| (1.0 - width.log10().floor()).clamp(0.0, 9.0) as usize;
+    let (metres, time) = (decimals(high - low), decimals(nanoseconds(high - low)));
+    let end = if at_end { ", at its end" } else { "" };
+    format!("bin {bin}{end}: {opl:.metres$} m, {:.time$} ns", nanoseconds(opl))
+}
+
 /// The bin that holds an OPL; the nearest one if none does.
 pub(crate) fn bin_of(edges: &[f64], opl: f64) -> usize {
     let above = edges.partition_point(|&edge| edge <= opl + 1e-9);
@@ -192,6 +225,15 @@ pub(crate) fn bin_of(edges: &[f64], opl: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Regression: pages named a frame by its lower edge, viewers and videos by its middle.
+    #[test]
+    fn frames_are_named_by_the_middle_of_their_bin() {
+        let edges: Vec<f64> = (0..5).map(|edge| 4.0 + 0.02 * f64::from(edge)).collect();
+        assert_eq!(frame_name(&edges, 1, false), "bin 1: 4.030 m, 13.443 ns");
+        assert_eq!(frame_name(&edges, 1, true), "bin 1, at its end: 4.040 m, 13.476 ns");
+        assert_eq!(frame_name(&[0.0, 1.0], 0, false), "bin 0: 0.5 m, 1.7 ns");
+    }
 
     #[test]
     fn trials_have_folders_of_their_own() {

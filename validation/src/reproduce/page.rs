@@ -40,13 +40,15 @@ th, td { padding: .2rem .6rem; text-align: right; border-bottom: 1px solid var(-
 th:first-child, td:first-child { text-align: left; }
 th.text, td.text { text-align: left; }
 td.words { white-space: normal; min-width: 14rem; }
+td.parts { white-space: normal; }
+th { white-space: normal; } .whole { white-space: nowrap; }
 table.pictures th, table.pictures td { border: 0; padding: 2px; text-align: center; font-size: .85rem;
   font-weight: 500; white-space: normal; }
 table.pictures th[scope=row] { writing-mode: vertical-rl; transform: rotate(180deg); color: var(--muted); }
 table.pictures tbody td { width: 16rem; }
 table.pictures img { display: block; width: 100%; min-width: 8rem; max-width: 16rem;
   background: var(--stage); }
-.chart { background: #fff; border-radius: 4px; display: block; width: 100%; min-width: 34rem; height: auto; }
+.chart { border-radius: 4px; display: block; width: 100%; min-width: 34rem; height: auto; }
 .scale { width: 16rem; height: 12px; image-rendering: pixelated; vertical-align: middle; }
 figure { margin: 0; }
 figcaption, .note { color: var(--muted); font-size: .92rem; max-width: 60rem; }
@@ -265,8 +267,19 @@ fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> String {
             .iter()
             .zip(&classes)
             .map(|(cell, class)| {
-                let words = if cell.len() > WORDS { " words" } else { "" };
-                format!("<td class=\"{class}{words}\">{}</td>", escape(cell))
+                let parts = parts(cell);
+                let words = match parts.as_slice() {
+                    [_, _, ..] => " parts",
+                    _ if cell.len() > WORDS => " words",
+                    _ => "",
+                };
+                let html = match parts.as_slice() {
+                    [_, _, ..] => joined(&parts, |part| {
+                        format!("<span class=\"whole\">{}</span> ", escape(part))
+                    }),
+                    _ => escape(cell),
+                };
+                format!("<td class=\"{class}{words}\">{}</td>", html.trim_end())
             })
             .collect();
         format!("<tr>{}</tr>\n", cells.concat())
@@ -276,6 +289,27 @@ fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> String {
         head.concat(),
         joined(rows, row)
     )
+}
+
+/// A value, its error and what follows: where a wide table may break a cell. Words are one part.
+fn parts(cell: &str) -> Vec<&str> {
+    let numbers = |c: char| c.is_ascii_digit() || "+-[\u{2212}".contains(c);
+    if !cell.starts_with(numbers) || cell.len() > WORDS {
+        return vec![cell];
+    }
+    let mut parts = Vec::new();
+    let mut rest = cell;
+    loop {
+        let before =
+            [" [", " \u{b1} ", "; "].iter().filter_map(|mark| Some((rest.find(mark)?, mark)));
+        let after = rest.find("] ").map(|at| at + 1);
+        let at = before.map(|(at, mark)| at + usize::from(*mark == "; ")).chain(after).min();
+        let Some(at) = at else { break };
+        parts.push(&rest[..at]);
+        rest = rest[at..].trim_start();
+    }
+    parts.push(rest);
+    parts
 }
 
 /// Whether all that stands in a column begins with a letter.
@@ -331,6 +365,30 @@ mod tests {
         }
         assert!(!html.contains("src=\"http") && !html.contains("url("));
         assert_eq!(html.matches("<img").count(), html.matches(" alt=\"").count());
+    }
+
+    /// Regression: wide tables had columns off screen.
+    #[test]
+    fn cells_of_numbers_break_between_their_parts() {
+        for (cell, expected) in [
+            ("1.2e-3 [1.0e-3, 1.4e-3]", vec!["1.2e-3", "[1.0e-3, 1.4e-3]"]),
+            ("[-1.4 %, +0.9 %] agree", vec!["[-1.4 %, +0.9 %]", "agree"]),
+            ("7.17e-2 \u{b1} 3.4e-4", vec!["7.17e-2", "\u{b1} 3.4e-4"]),
+            (
+                "88.8 [65.7, 118]; wall: 79.3 [58.7, 105]",
+                vec!["88.8", "[65.7, 118];", "wall: 79.3", "[58.7, 105]"],
+            ),
+            ("0 to 160", vec!["0 to 160"]),
+            ("words [in brackets]", vec!["words [in brackets]"]),
+        ] {
+            assert_eq!(parts(cell), expected);
+        }
+        let mut page = Page::new("t");
+        page.table("c", &["a", "b"], &[vec!["x".into(), "1.2 [1.0, 1.4]".into()]]);
+        let html = page.html(DEFAULT_BUDGET).unwrap().0;
+        let cell = "<td class=\"number parts\"><span class=\"whole\">1.2</span> \
+                    <span class=\"whole\">[1.0, 1.4]</span></td>";
+        assert!(html.contains(cell), "{html}");
     }
 
     #[test]

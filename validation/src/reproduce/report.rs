@@ -7,6 +7,7 @@ use tpb_viewer::{Factors, PageReport};
 use super::compare::{Comparison, Part};
 use super::losses::losses;
 use super::page::Page;
+use super::race::Replicate;
 use super::truth::Origin;
 use super::{charts, tables, write_text};
 use crate::error::{Result, ValidationError};
@@ -185,6 +186,45 @@ pub(crate) fn provenance_of(circumstances: &Circumstances) -> Vec<(String, Strin
         ("commit".into(), circumstances.commit.clone()),
         ("machine".into(), circumstances.machine.clone()),
     ]
+}
+
+/// What the viewer shows of one run: what was spent on it, and its effective options.
+pub(crate) fn provenance_of_run(
+    circumstances: &Circumstances,
+    run: &Replicate,
+) -> Vec<(String, String)> {
+    let mut rows = provenance_of(circumstances);
+    rows.push(("seed".into(), run.seed.to_string()));
+    if let Some(spent) = run.spent.last() {
+        rows.push(("passes".into(), spent.passes.to_string()));
+        rows.push(("wall s".into(), format!("{:.2}", spent.wall_seconds)));
+        rows.push(("CPU s".into(), format!("{:.2}", spent.cpu_seconds)));
+    }
+    let options = run.options.as_object().into_iter().flatten();
+    let options: Vec<String> = options
+        .map(|(name, value)| {
+            let word = value.as_str().map_or_else(|| value.to_string(), ToOwned::to_owned);
+            format!("{} {word}", name.replace('_', " "))
+        })
+        .collect();
+    rows.push(("options".into(), options.join(", ")));
+    rows
+}
+
+/// The same of a long render: whose sources made it, in how many passes.
+pub(crate) fn provenance_of_reference(
+    circumstances: &Circumstances,
+    origin: Option<&Origin>,
+    cpu_seconds: f64,
+) -> Vec<(String, String)> {
+    let mut rows = vec![("machine".into(), circumstances.machine.clone())];
+    if let Some(Origin { method, batches, passes, commits, .. }) = origin {
+        rows.insert(0, ("commit".into(), commits.join(", ")));
+        rows.push(("method".into(), method.clone()));
+        rows.push(("passes".into(), format!("{batches} batches of {passes}")));
+    }
+    rows.push(("CPU s".into(), format!("{cpu_seconds:.0}")));
+    rows
 }
 
 /// What was compared, and how.

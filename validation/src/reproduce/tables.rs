@@ -6,10 +6,23 @@ use super::mirrors::caustics::{Difference, Verdict};
 use crate::statistics::split::Estimate;
 use crate::statistics::{Factor, Winner};
 
-/// `1.2e-3 [1.0e-3, 1.4e-3]`.
+/// `1.20e-3 [1.0e-3, 1.4e-3]`, `0.789 [0.67, 0.91]`.
 pub(crate) fn interval(estimate: &Estimate) -> String {
-    let [low, high] = estimate.interval;
-    format!("{:.2e} [{low:.1e}, {high:.1e}]", estimate.value)
+    let [low, high] = estimate.interval.map(|end| digits(end, 2));
+    format!("{} [{low}, {high}]", digits(estimate.value, 3))
+}
+
+/// A number to so many digits, with a power of ten where it is small or large.
+fn digits(value: f64, count: usize) -> String {
+    let size = value.abs();
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    if !size.is_finite() || !(0.1..1e4).contains(&size) {
+        return format!("{value:.*e}", count - 1);
+    }
+    let before = size.log10().floor() + 1.0;
+    format!("{value:.*}", (count as f64 - before).max(0.0) as usize)
 }
 
 /// `[-1.0 %, +2.0 %]`.
@@ -123,7 +136,7 @@ pub(crate) fn won(comparison: &Comparison, who: Winner) -> String {
     let ranges = comparison.won(who);
     let name = winner(comparison, who);
     if ranges.is_empty() {
-        return format!("In no single bin has {name} less error, with its interval.");
+        return format!("{name}: in no single bin less error, with its interval.");
     }
     let bins: usize = ranges.iter().map(|(range, _)| range.len()).sum();
     let share: f64 = ranges.iter().map(|(_, share)| share).sum();
@@ -145,10 +158,26 @@ pub(crate) fn won(comparison: &Comparison, who: Winner) -> String {
         })
         .collect();
     format!(
-        "{name} has less error, each with its interval, in {bins} of {} bins, which hold {:.1} % of \
+        "{name}: less error, each with its interval, in {bins} of {} bins, which hold {:.1} % of \
          \u{3a3}r\u{b2}; the longest runs: {}.",
         comparison.frames.len(),
         100.0 * share,
         named.join("; ")
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Regression: numbers near 1 were `3.40e0 [2.6e0, 4.2e0]`.
+    #[test]
+    fn numbers_near_one_have_no_power_of_ten() {
+        let text = |value, ends| interval(&Estimate { value, standard_error: 0.0, interval: ends });
+        assert_eq!(text(3.4, [2.6, 4.2]), "3.40 [2.6, 4.2]");
+        assert_eq!(text(0.789, [0.67, 0.91]), "0.789 [0.67, 0.91]");
+        assert_eq!(text(59.8, [43.0, 77.0]), "59.8 [43, 77]");
+        assert_eq!(text(1.2e-3, [-1e-3, 1.4e-3]), "1.20e-3 [-1.0e-3, 1.4e-3]");
+        assert_eq!(text(f64::NAN, [0.0, f64::INFINITY]), "NaN [0, inf]");
+    }
 }

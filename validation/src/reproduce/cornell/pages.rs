@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use tpb_film::Arrays;
-use tpb_optics::opl::seconds_from_opl;
 use tpb_viewer::{Method, PixelErrors};
 
 use super::super::colour::{diverging, frame_luminances, luminance, sequential, white};
@@ -11,7 +10,7 @@ use super::super::compare::Comparison;
 use super::super::maps::{BiasMap, VarianceMaps, scale_bar};
 use super::super::page::Page;
 use super::super::picture::Picture;
-use super::super::{bin_of, report};
+use super::super::{bin_of, frame_name, report};
 use super::{CornellResult, Shown};
 use crate::error::Result;
 use crate::statistics::Factor;
@@ -127,11 +126,8 @@ fn sequence(page: &mut Page, out: &Path, arrays: &[Arrays; 3]) -> Result<()> {
         .collect();
     Picture::grid(&pictures, GAP, PAPER).write(&out.join("sequence.png"))?;
     Picture::small_grid(&pictures[..2], GAP, PAPER).write(&out.join("small.png"))?;
-    let time = |bin: usize| {
-        let opl = reference.opl_edges[bin];
-        format!("bin {bin}: {opl:.2} m, {:.1} ns", 1e9 * seconds_from_opl(opl))
-    };
-    let columns: Vec<String> = bins.iter().map(|&bin| time(bin)).collect();
+    let columns: Vec<String> =
+        bins.iter().map(|&bin| frame_name(&reference.opl_edges, bin, false)).collect();
     let rows: Vec<(String, Vec<(Picture, String)>)> = rows
         .iter()
         .zip(pictures)
@@ -144,8 +140,8 @@ fn sequence(page: &mut Page, out: &Path, arrays: &[Arrays; 3]) -> Result<()> {
         .collect();
     page.heading("The sequence (the source's figure 2, with a reference)");
     page.pictures(
-        "One bin of time each, the same for all rows, with the same exposure: display white is the \
-         99th percentile of the reference's lit cells in these frames.",
+        "One bin of time each, named by its middle, the same for all rows, with the same exposure: \
+         display white is the 99th percentile of the reference's lit cells in these frames.",
         &columns,
         &rows,
     );
@@ -190,12 +186,10 @@ fn viewer(
     let method = |key: &str, index: usize, label: &str, arrays| {
         let mut method = Method::new(key, label, arrays);
         method.batches = Some(comparison.replicates as u64);
-        let spent = &comparison.whole().methods[index];
-        method.provenance = report::provenance_of(&result.circumstances);
-        method.provenance.push(("seed".into(), shown.contested.runs[index][0].seed.to_string()));
-        method.provenance.push(("wall s".into(), format!("{:.2}", spent.spent.wall_seconds)));
-        method.provenance.push(("CPU s".into(), format!("{:.2}", spent.spent.cpu_seconds)));
-        method.command = Some(result.command.clone());
+        // The arrays are those of the first replicate.
+        let run = &shown.contested.runs[index][0];
+        method.provenance = report::provenance_of_run(&result.circumstances, run);
+        method.command = Some(shown.commands[index].clone());
         method
     };
     let seconds = comparison.whole().seconds;
@@ -206,8 +200,13 @@ fn viewer(
     truth.is_reference = true;
     truth.batches = Some(shown.contested.truth.window_freedom as u64 + 1);
     truth.pixel_errors = PixelErrors::Independent;
-    truth.provenance = report::provenance_of(&result.circumstances);
-    truth.provenance.push(("CPU s".into(), format!("{:.0}", comparison.reference_cpu_seconds)));
+    let origin = comparison.reference.as_ref();
+    truth.provenance = report::provenance_of_reference(
+        &result.circumstances,
+        origin,
+        comparison.reference_cpu_seconds,
+    );
+    truth.command = origin.and_then(|origin| origin.commands.last().cloned());
     let mut page = tpb_viewer::Comparison::new("Cornell blocks", vec![path_method, beams, truth]);
     page.caption = "Photon beams and path tracing at equal time, with a long path render.".into();
     page.judged = Some(shown.contested.truth.judged.clone());

@@ -71,6 +71,19 @@ fn all_files_are_made_and_agree_with_each_other() {
     ] {
         assert!(page.contains(part), "{part}");
     }
+    // Regression: the viewer told the means of all replicates, and a command that repeats the time.
+    let viewer = fs::read_to_string(out.join("viewer.html")).unwrap();
+    for method in ["path", "beams"] {
+        let start = format!("tpb render scenes/cornell-blocks.json --method {method} --passes ");
+        let command = viewer.split(&start).nth(1).expect("a command");
+        let command: Vec<&str> = command.split('"').next().unwrap().split(' ').collect();
+        let [passes, "--seed", seed, "--set", "sensor.film.width=12", ..] = command[..] else {
+            panic!("{command:?}")
+        };
+        let told = |name: &str, value: &str| viewer.contains(&format!("[\"{name}\",\"{value}\"]"));
+        assert!(told("passes", passes) && told("seed", seed), "{method}: {passes}, {seed}");
+    }
+    assert!(viewer.contains("[\"options\",\"samples per pass "));
     let kept: CornellResult =
         serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
     assert_eq!(kept, result);
@@ -89,6 +102,37 @@ fn all_files_are_made_and_agree_with_each_other() {
     fs::remove_dir_all(&options.out).unwrap();
 }
 
+/// The passes and the seed that the command names make the run again, to the halves in which races
+/// keep it.
+fn the_command_repeats(
+    options: &Options,
+    loaded: &tpb_scene::load::LoadedScene,
+    method: &crate::measure::Estimator,
+    run: &super::super::race::Replicate,
+) {
+    let command = options.render_command(NAME, method.name(), run).unwrap();
+    let words: Vec<&str> = command.split(' ').collect();
+    let number = |flag: &str| -> u64 {
+        let at = words.iter().position(|word| *word == flag).expect("a flag");
+        words[at + 1].parse().unwrap()
+    };
+    let changes: Vec<String> =
+        words.windows(2).filter(|pair| pair[0] == "--set").map(|pair| pair[1].to_owned()).collect();
+    let scene = options.scenes.join("..").join(words[2]);
+    let again = super::super::load(&scene, &changes).unwrap();
+    assert_eq!(again.canonical, loaded.canonical, "{command}");
+    let budget = tpb_render::Budget::Passes(number("--passes"));
+    let settings = tpb_render::RunSettings { seed: number("--seed"), budget, first_pass: 0 };
+    let scene = &again.scene;
+    let plan = tpb_scene::Plan::new(scene, &scene.integrator);
+    let prepared = method.prepare::<3>(scene, &plan, scene.integrator).unwrap();
+    let layout = crate::measure::layout(&scene.film, 0.0).unwrap();
+    let (arrays, _) = crate::measure::render(&*prepared, layout, &settings).unwrap();
+    let kept = run.cube(0).unwrap().cells();
+    assert_eq!(super::super::halves::HalfCube::of(&arrays).cells(), kept);
+    assert!(kept.iter().any(|&cell| cell > 0.0));
+}
+
 #[test]
 fn an_interrupted_race_goes_on_and_a_folder_that_cannot_be_written_is_told_first() {
     let options = trial("race");
@@ -105,6 +149,7 @@ fn an_interrupted_race_goes_on_and_a_folder_that_cannot_be_written_is_told_first
         folder: options.out.join("kept"),
     };
     let first = race(2, 5).run(&mut Watch::default()).unwrap();
+    the_command_repeats(&options, &loaded, &methods[0], &first[0][1]);
     let mut told = Vec::new();
     let more =
         race(3, 5).run(&mut Watch::new(&mut |line: &str| told.push(line.to_owned()))).unwrap();

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use tpb_film::{Arrays, Pulse};
-use tpb_optics::opl::seconds_from_opl;
 use tpb_viewer::{Method, PixelErrors};
 
 use super::super::colour::{frame_luminances, white};
 use super::super::page::Page;
 use super::super::picture::Picture;
-use super::super::{Options, report, tables};
+use super::super::race::Replicate;
+use super::super::{Options, frame_name, report, tables};
 use super::caustics::{BEAMS_LIGHT, Caustics, LIMIT_LIGHT, MARGIN, THREE};
 use super::room::Event;
 use super::{MirrorsResult, TWIN, seen};
@@ -19,12 +19,21 @@ use crate::error::{Result, ValidationError};
 const GAP: usize = 4;
 const PAPER: [u8; 3] = [255; 3];
 
+/// What made the arrays that are shown.
+pub(super) struct MadeBy<'a> {
+    /// The run.
+    pub(super) run: &'a Replicate,
+    /// What repeats it.
+    pub(super) command: String,
+}
+
 /// Writes both sequences, the viewer's page, and `index.html`; the delta sequence is used up.
 /// `about_caustics` is what [`caustics_viewer`] says of its page.
 pub(super) fn write(
     out: &Path,
     result: &MirrorsResult,
     mut arrays: Arrays,
+    made: &MadeBy<'_>,
     about_caustics: &str,
 ) -> Result<()> {
     let mut page = Page::new("Mirrors: wavefronts reflected, and refracted late");
@@ -36,7 +45,7 @@ pub(super) fn write(
     ));
     let events = shown(&result.events, arrays.bins);
     let delta = frames(&arrays, &events);
-    let about = viewer(out, result, &arrays)?;
+    let about = viewer(out, result, made, &arrays)?;
     let pulse = arrays.apply_pulse(Pulse::Continuous);
     pulse.map_err(|error| ValidationError::unusable("continuous emission", error))?;
     let continuous = frames(&arrays, &events);
@@ -107,27 +116,27 @@ fn sequences(
     let rows = [delta.clone(), continuous.clone()];
     Picture::grid(&rows, GAP, PAPER).write(&out.join("sequence.png"))?;
     Picture::small_grid(&rows, GAP, PAPER).write(&out.join("small.png"))?;
-    let columns: Vec<String> = events
-        .iter()
-        .map(|&Shown { bin, .. }| {
-            let opl = edges[bin];
-            format!("bin {bin}: {opl:.2} m, {:.1} ns", 1e9 * seconds_from_opl(opl))
-        })
-        .collect();
-    let row = |name: &str, pictures: Vec<Picture>| {
-        let named = pictures.into_iter().zip(columns.iter().zip(events));
-        let with_alt = named.map(|(picture, (column, shown))| {
-            (picture, format!("{name}, {column}: {}", shown.label))
+    let columns: Vec<String> =
+        events.iter().map(|shown| frame_name(edges, shown.bin, false)).collect();
+    let row = |name: &str, at_end: bool, pictures: Vec<Picture>| {
+        let named = pictures.into_iter().zip(events);
+        let with_alt = named.map(|(picture, Shown { bin, label, .. })| {
+            (picture, format!("{name}, {}: {label}", frame_name(edges, *bin, at_end)))
         });
-        (name.to_owned(), with_alt.collect::<Vec<_>>())
+        let head = if at_end { format!("{name}, at the bin's end") } else { name.to_owned() };
+        (head, with_alt.collect::<Vec<_>>())
     };
+    let width = edges[1] - edges[0];
     page.heading("The sequence (the source's figure 3)");
     page.pictures(
-        "Above: a delta pulse, energy of one bin. Below: continuous emission from time 0 on, radiance \
-         at the bin's end. Each row has one exposure: display white is the 99th percentile of its lit \
-         cells.",
+        &format!(
+            "Above: a delta pulse, energy of one bin, named by its middle. Below: continuous emission \
+             from time 0 on, radiance at the bin's end, {:.3} m after the time above it. Each row has \
+             one exposure: display white is the 99th percentile of its lit cells.",
+            0.5 * width
+        ),
         &columns,
-        &[row("delta pulse", delta), row("continuous emission", continuous)],
+        &[row("delta pulse", false, delta), row("continuous emission", true, continuous)],
     );
     page.text(&format!("What is seen, and where. {}", seen::LAYOUT));
     let line = |Shown { bin, label, seen }: &Shown| format!("Bin {bin}, {label}. {seen}");
@@ -302,10 +311,15 @@ fn row(region: &super::caustics::RegionResult) -> Vec<String> {
     row
 }
 
-fn viewer(out: &Path, result: &MirrorsResult, arrays: &Arrays) -> Result<String> {
+fn viewer(
+    out: &Path,
+    result: &MirrorsResult,
+    made: &MadeBy<'_>,
+    arrays: &Arrays,
+) -> Result<String> {
     let mut method = Method::new("beams", "photon beams", arrays);
-    method.provenance = report::provenance_of(&result.circumstances);
-    method.command = Some(result.command.clone());
+    method.provenance = report::provenance_of_run(&result.circumstances, made.run);
+    method.command = Some(made.command.clone());
     let mut page = tpb_viewer::Comparison::new("Mirrors", vec![method]);
     page.caption = "A pulse in a fog-filled room with mirrors and a glass ball.".into();
     page.notes =
@@ -320,9 +334,9 @@ pub(super) fn caustics_viewer(
     found: &Caustics,
     means: &[Arrays],
 ) -> Result<String> {
-    let methods = found.methods.iter().zip(&found.cpu_seconds).zip(means);
+    let methods = found.methods.iter().zip(&found.cpu_seconds).zip(&found.passes).zip(means);
     let methods = methods
-        .map(|((name, seconds), arrays)| {
+        .map(|(((name, seconds), passes), arrays)| {
             let key = name.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
             let mut method = Method::new(key, format!("{name}, {seconds:.0} CPU s"), arrays);
             method.batches = Some(found.batches);
@@ -330,6 +344,9 @@ pub(super) fn caustics_viewer(
                 method.pixel_errors = PixelErrors::Independent;
             }
             method.provenance = report::provenance_of(&options.circumstances);
+            let passes = format!("{passes}, in {} batches", found.batches);
+            method.provenance.push(("passes".into(), passes));
+            method.provenance.push(("CPU s".into(), format!("{seconds:.0}")));
             method.command = Some(options.command.clone());
             method
         })
