@@ -53,6 +53,31 @@ pub struct Agreement {
     pub judged: f64,
 }
 
+/// The methods beside beams.
+const OTHERS: [(MethodName, &str); 2] = [(MethodName::Path, "path"), (MethodName::Light, "light")];
+
+/// The method that renders most of what beams render, the path tracer before the light tracer.
+///
+/// # Errors
+/// Why there is none: what each method leaves out.
+pub fn companion(scene: &Scene) -> std::result::Result<&'static str, String> {
+    let plan = Plan::new(scene, &scene.integrator);
+    let (mut best, mut reasons) = (None, Vec::new());
+    for (method, name) in OTHERS {
+        let pixels = match overlap(scene, &plan, method) {
+            Ok(pixels) => pixels.into_iter().filter(|&rendered| rendered).count(),
+            Err(reason) => {
+                reasons.push(format!("{name}: {reason}"));
+                continue;
+            }
+        };
+        if pixels > best.map_or(0, |(most, _)| most) {
+            best = Some((pixels, name));
+        }
+    }
+    best.map(|(_, name)| name).ok_or_else(|| reasons.join("; "))
+}
+
 /// Compares beams with each other method. `loaded` has the scene with the small film, `full` the
 /// one with its own.
 ///
@@ -68,7 +93,7 @@ pub fn agreements(
     let beams = beams(&full.scene)?;
     let mut ours: Option<Vec<Cube>> = None;
     let mut all = Vec::new();
-    for (method, name) in [(MethodName::Path, "path"), (MethodName::Light, "light")] {
+    for (method, name) in OTHERS {
         let pixels = match overlap(scene, &plan, method) {
             Ok(pixels) => pixels,
             Err(reason) => {
@@ -131,7 +156,8 @@ fn overlap(
     }
 }
 
-fn compare(
+/// Judges batches against those of another method.
+pub(crate) fn compare(
     film: &FilmSpec,
     judged: &[bool],
     (ours, theirs): (&[Cube], &[Cube]),

@@ -8,6 +8,7 @@ use tpb_optics::opl::seconds_from_opl;
 use tpb_render::Report;
 
 use super::catalogue::{GalleryScene, Moment};
+use super::order::{self, Beside, Order};
 use crate::error::{Result, ValidationError};
 
 /// A picture of a card.
@@ -68,21 +69,25 @@ impl Card {
         if !file.exists() {
             return Ok(None);
         }
-        let text = fs::read_to_string(&file).map_err(|e| ValidationError::io(&file, e))?;
-        let report: Report = serde_json::from_str(&text)
-            .map_err(|error| ValidationError::unusable(file.display().to_string(), error))?;
+        let report = read_report(&file)?;
         let mut links = vec![("Animation", format!("{}/animation.png", scene.name))];
         links.push(("Report", format!("{}/report.json", scene.name)));
         let viewer = format!("{}.html", scene.name);
         if gallery.join(&viewer).exists() {
             links.insert(0, ("Explore pixels and times", viewer));
         }
+        let mut facts = facts(&report);
+        facts.extend(beside(scene, gallery)?.map(|text| ("In the viewer", text)));
+        let second = format!("{}-beside/report.json", scene.name);
+        if gallery.join(&second).is_file() {
+            links.push(("Report of the second method", second));
+        }
         Ok(Some(Self {
             name: scene.name.clone(),
             title: scene.title.clone(),
             text: scene.text.to_owned(),
             pictures: pictures(scene, &report, gallery)?,
-            facts: facts(&report),
+            facts,
             left_out: left_out(&report.plan),
             warnings: warnings(&report),
             command: command(scene, &report),
@@ -90,6 +95,43 @@ impl Card {
         }))
     }
 }
+
+fn read_report(file: &Path) -> Result<Report> {
+    let text = fs::read_to_string(file).map_err(|error| ValidationError::io(file, error))?;
+    serde_json::from_str(&text)
+        .map_err(|error| ValidationError::unusable(file.display().to_string(), error))
+}
+
+/// What the viewer has beside the method of the pictures; `None` if nobody knows.
+fn beside(scene: &GalleryScene, gallery: &Path) -> Result<Option<String>> {
+    let report = order::beside(&scene.name, gallery).join("report.json");
+    Ok(match Order::read(&scene.name, gallery).map(|order| order.beside) {
+        Some(Beside::Method(_)) if report.is_file() => Some(companion(&read_report(&report)?)),
+        Some(Beside::Nobody(reason)) => {
+            Some(format!("alone; others do not render it all: {reason}"))
+        }
+        _ => None,
+    })
+}
+
+/// A companion, and what it leaves out.
+fn companion(report: &Report) -> String {
+    let run = &report.run;
+    let flipped = format!(
+        "with {}, {:.0} s, {} passes, flipped in place; neither is a reference",
+        method(&report.method.name),
+        run.wall_seconds,
+        run.passes
+    );
+    let lost = report.warnings.iter().filter_map(|warning| warning.strip_prefix(LACKS));
+    std::iter::once(flipped)
+        .chain(lost.map(|lost| format!("it lacks {lost}")))
+        .collect::<Vec<_>>()
+        .join("; ")
+}
+
+/// How a report's warning of light that is left out begins.
+const LACKS: &str = "the image lacks ";
 
 fn read(gallery: &Path, file: String, caption: String, alt: String) -> Result<Picture> {
     let path = gallery.join(&file);
@@ -183,7 +225,8 @@ fn facts(report: &Report) -> Vec<(&'static str, String)> {
     ]
 }
 
-fn method(name: &str) -> &str {
+/// A method's name for people.
+pub fn method(name: &str) -> &str {
     match name {
         "beams" => "photon beams",
         "path" => "path tracing",
@@ -194,7 +237,7 @@ fn method(name: &str) -> &str {
 
 /// Warnings, but for those that the plan's list says already.
 fn warnings(report: &Report) -> Vec<String> {
-    let new = |text: &&String| !text.starts_with("the image lacks ");
+    let new = |text: &&String| !text.starts_with(LACKS);
     report.warnings.iter().filter(new).cloned().collect()
 }
 
@@ -252,6 +295,28 @@ mod tests {
     fn times_are_readable() {
         assert_eq!(duration(3.5e-10), "350 ps");
         assert_eq!(duration(1.2345e-8), "12.35 ns");
+    }
+
+    #[test]
+    fn a_card_tells_why_a_method_stands_alone() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+        let scene = super::super::scenes_in(&scenes).expect("scenes").remove(0);
+        assert_eq!(beside(&scene, folder.path()).expect("a text"), None, "nothing was asked for");
+        let order = |beside| Order {
+            commit: "abc".into(),
+            scene: Value::Null,
+            method: "beams".into(),
+            beside,
+            seconds: 1.0,
+            budget: 1.0,
+        };
+        let keep = |beside| order(beside).keep(&scene.name, folder.path()).expect("a file");
+        keep(Beside::Nobody("path: it leaves out light of lasers".into()));
+        let text = beside(&scene, folder.path()).expect("a text").expect("a reason");
+        assert!(text.starts_with("alone") && text.contains("light of lasers"), "{text}");
+        keep(Beside::Method("path".into()));
+        assert_eq!(beside(&scene, folder.path()).expect("a text"), None, "it is not rendered yet");
     }
 
     #[test]

@@ -11,6 +11,7 @@ use tpb_render::{Budget, FilmSetup, RenderOptions, RunSettings, Stopwatch, run};
 use tpb_scene::load::{LoadedScene, Override, load_scene};
 use tpb_scene::{MethodName, Plan, Scene, Transport};
 
+use super::agreement::companion;
 use super::catalogue::{ENTRIES, GalleryScene, scenes_in};
 use crate::measure::Estimator;
 
@@ -190,6 +191,28 @@ fn photon_beams_render_all_light_of_every_scene() {
         let plan = Plan::new(&loaded.scene, &loaded.scene.integrator).of_method(MethodName::Beams);
         assert!(plan.left_out.iter().all(|item| !item.loses_light), "{}: {plan}", scene.name);
     }
+}
+
+/// Each viewer has two methods, the path tracer where it renders all.
+#[test]
+fn every_scene_has_a_second_method() {
+    let all = [
+        ("torus-knot", "light"),
+        ("laser-smoke", "light"),
+        ("liquid", "light"),
+        ("window", "path"),
+        ("chapel", "light"),
+        ("frosted", "path"),
+        ("neon", "path"),
+        ("surfaces-only", "path"),
+        ("fog-only", "path"),
+        ("cornell-blocks", "path"),
+        ("mirrors", "light"),
+        ("mirrors-area", "path"),
+    ];
+    let found: Vec<_> =
+        all.iter().map(|&(name, _)| (name, companion(&named(name).scene).expect(name))).collect();
+    assert_eq!(found, all);
 }
 
 #[test]

@@ -10,15 +10,26 @@ use clap::Args;
 Examples:
   tpb view beams --open
   tpb view cube.npy -o cube.html
+  tpb view beams path light            methods flipped in place; none judges the others
 
-The page is one file and asks the network for nothing. Cubes that do not fit --budget are reduced by
+The page is one file and asks the network for nothing. Several results need equal shapes, pulses and
+zeros of time; for error numbers against one of them, see `tpb compare`. Cubes that do not fit --budget are reduced by
 means over pixels and sums over bins; the page says so.
 Exit codes: 0 done; 1 done, but some cells are negative or not finite; 2 bad usage or files.")]
 pub(crate) struct ViewArgs {
-    /// A result folder, or a cube of any program (.npz, .npy)
-    pub(crate) result: PathBuf,
+    /// Result folders, or cubes of any program (.npz, .npy); several are shown in one place
+    #[arg(required = true, value_name = "RESULT")]
+    pub(crate) results: Vec<PathBuf>,
 
-    /// Title of the page [default: the scene, or the file]
+    /// Names, in the order of the results [default: those of the files]
+    #[arg(long = "label", value_name = "TEXT")]
+    pub(crate) labels: Vec<String>,
+
+    /// A remark for the page; may be given again
+    #[arg(long = "note", value_name = "TEXT")]
+    pub(crate) notes: Vec<String>,
+
+    /// Title of the page [default: the scene, or the files]
     #[arg(long, value_name = "TEXT")]
     pub(crate) title: Option<String>,
 

@@ -6,7 +6,7 @@ use tpb_film::Arrays;
 use tpb_viewer::{Comparison, Loaded, Ruling, bring_together, load_mask};
 
 use super::alike::{check, remark_shared};
-use super::input::{Input, name};
+use super::input::{Input, keys, name, read_all};
 use super::numbers::{Judged, Verdicts};
 use super::{CompareArgs, describe, open_page, write_page};
 use crate::failure::Failure;
@@ -16,17 +16,9 @@ use crate::print;
 pub(crate) fn run(args: &CompareArgs) -> Result<ExitCode, Failure> {
     let paths = [Some(&args.a), Some(&args.b), args.reference.as_ref()];
     let paths: Vec<_> = paths.into_iter().flatten().collect();
-    if args.labels.len() > paths.len() {
-        let message = format!("{} labels for {} results", args.labels.len(), paths.len());
-        return Err(Failure::with_help(message, "labels are in the order A, B, reference"));
-    }
-    let mut inputs = Vec::with_capacity(paths.len());
-    for (index, path) in paths.iter().enumerate() {
-        inputs.push(Input::read(path, args.labels.get(index))?);
-    }
+    let mut inputs = read_all(&paths, &args.labels, "labels are in the order A, B, reference")?;
     let mut loaded: Vec<&mut Loaded> = inputs.iter_mut().map(|input| &mut input.loaded).collect();
     let timed = bring_together(&mut loaded)?;
-    tell_apart(&mut inputs, |index| paths[index].display().to_string());
     check(&mut inputs)?;
     // Without a reference of its own, the first judges the second.
     let reference = if args.reference.is_some() { 2 } else { 0 };
@@ -66,16 +58,6 @@ pub(crate) fn run(args: &CompareArgs) -> Result<ExitCode, Failure> {
     Ok(if sound { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Equal labels become the paths.
-fn tell_apart(inputs: &mut [Input], path: impl Fn(usize) -> String) {
-    let labels: Vec<String> = inputs.iter().map(|input| input.label.clone()).collect();
-    for (index, input) in inputs.iter_mut().enumerate() {
-        if labels.iter().filter(|label| **label == input.label).count() > 1 {
-            input.label = path(index);
-        }
-    }
-}
-
 fn judge(inputs: &[Input], reference: usize, mask: Option<&[bool]>) -> Vec<Judged> {
     let others = (0..inputs.len()).filter(|&index| index != reference);
     others.map(|index| Judged::new(index, &inputs[index], &inputs[reference], mask)).collect()
@@ -99,20 +81,6 @@ fn notes(args: &CompareArgs, truth: &Arrays, mask: Option<&[bool]>) -> Vec<Strin
         notes.push(format!("{ruling}{way_out}"));
     }
     notes
-}
-
-/// Keys for links: labels in plain letters, told apart by a number.
-fn keys(inputs: &[Input]) -> Vec<String> {
-    let mut keys: Vec<String> = Vec::new();
-    for input in inputs {
-        let letters = input.label.to_lowercase();
-        let words: Vec<&str> =
-            letters.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
-        let key = words.join("-");
-        let taken = keys.contains(&key) || key.is_empty();
-        keys.push(if taken { format!("{key}-{}", keys.len() + 1) } else { key });
-    }
-    keys
 }
 
 fn comparison<'a>(args: &CompareArgs, inputs: &'a [Input], reference: usize) -> Comparison<'a> {

@@ -1,6 +1,6 @@
 //! A result and what its report says of it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use tpb_render::Report;
@@ -67,7 +67,9 @@ impl Input {
         let mut method = Method::new(key, &self.label, &self.loaded.arrays);
         method.batches = self.batches();
         method.unit_known = self.loaded.unit_known;
-        method.caption = self.loaded.remarks.join("; ");
+        let lacks = self.report.iter().flat_map(lacks);
+        let remarks = self.loaded.remarks.iter().map(String::as_str).chain(lacks);
+        method.caption = remarks.collect::<Vec<_>>().join("; ");
         method.provenance.push(("file".to_owned(), self.loaded.file.display().to_string()));
         if self.loaded.window_only && self.loaded.arrays.bins > 0 {
             let what = "the light of the window alone, from the bins".to_owned();
@@ -85,6 +87,44 @@ impl Input {
     }
 }
 
+/// Reads results; those of equal names are told apart by their paths. `order` says to which results
+/// labels belong.
+pub(super) fn read_all(
+    paths: &[&PathBuf],
+    labels: &[String],
+    order: &str,
+) -> Result<Vec<Input>, Failure> {
+    if labels.len() > paths.len() {
+        let message = format!("{} labels for {} results", labels.len(), paths.len());
+        return Err(Failure::with_help(message, order));
+    }
+    let mut inputs = Vec::with_capacity(paths.len());
+    for (index, path) in paths.iter().enumerate() {
+        inputs.push(Input::read(path, labels.get(index))?);
+    }
+    let names: Vec<String> = inputs.iter().map(|input| input.label.clone()).collect();
+    for (input, path) in inputs.iter_mut().zip(paths) {
+        if names.iter().filter(|name| **name == input.label).count() > 1 {
+            input.label = path.display().to_string();
+        }
+    }
+    Ok(inputs)
+}
+
+/// Keys for links: labels in plain letters, told apart by a number.
+pub(super) fn keys(inputs: &[Input]) -> Vec<String> {
+    let mut keys: Vec<String> = Vec::new();
+    for input in inputs {
+        let letters = input.label.to_lowercase();
+        let words: Vec<&str> =
+            letters.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        let key = words.join("-");
+        let taken = keys.contains(&key) || key.is_empty();
+        keys.push(if taken { format!("{key}-{}", keys.len() + 1) } else { key });
+    }
+    keys
+}
+
 /// The name of a file or folder without what precedes it; an archive of ours is named by its folder.
 pub(crate) fn name(path: &Path) -> String {
     let of = |path: &Path| path.file_stem().map(|name| name.to_string_lossy().into_owned());
@@ -92,6 +132,12 @@ pub(crate) fn name(path: &Path) -> String {
     let folder = path.parent().filter(|_| in_folder).and_then(of);
     let absolute = || path.canonicalize().ok().and_then(|path| of(&path));
     folder.or_else(|| of(path)).or_else(absolute).unwrap_or_else(|| "result".to_owned())
+}
+
+/// What a report's method leaves out of the image.
+fn lacks(report: &Report) -> impl Iterator<Item = &str> {
+    let lacking = |warning: &&str| warning.starts_with("the image lacks ");
+    report.warnings.iter().map(String::as_str).filter(lacking)
 }
 
 /// A number of seconds.

@@ -94,6 +94,36 @@ fn a_page_holds_its_results_and_the_commands_that_repeat_them() {
 }
 
 #[test]
+fn results_are_viewed_side_by_side_without_a_judge() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_done(&render(folder.path(), "path", &PATH));
+    assert_done(&render(
+        folder.path(),
+        "beams",
+        &[&FEW[..], &["--passes", "1", "--no-pictures"]].concat(),
+    ));
+    let labels =
+        ["--label", "paths", "--label", "light beams", "--note", "a remark", "-o", "v.html"];
+    assert_done(&tpb(folder.path(), [&["view", "path", "beams"][..], &labels].concat()));
+    let manifest = manifest(&folder.path().join("v.html"));
+    let methods = manifest["methods"].as_array().unwrap();
+    let of = |key: &str| methods.iter().map(|m| m[key].clone()).collect::<Vec<_>>();
+    assert_eq!(of("key"), ["paths", "light-beams"]);
+    assert_eq!(of("label"), ["paths", "light beams"]);
+    assert_eq!(of("reference"), [false, false]);
+    let notes = manifest["notes"].to_string();
+    assert!(
+        notes.contains("No result here is a reference") && notes.contains("a remark"),
+        "{notes}"
+    );
+    // Without names of their own they are told apart by their paths, and the page is named after them.
+    assert_done(&tpb(folder.path(), ["view", "path", "path/transient.npz"]));
+    assert!(folder.path().join("path-path.html").exists());
+    let refused = tpb(folder.path(), ["view", "path", "--label", "a", "--label", "b"]);
+    assert_refused(&refused, &["2 labels for 1 results"]);
+}
+
+#[test]
 fn cubes_of_others_meet_results_of_ours() {
     let folder = tempfile::tempdir().unwrap();
     assert_done(&render(folder.path(), "path", &PATH));
