@@ -18,8 +18,11 @@ use crate::error::{Result, ValidationError};
 
 /// Pictures are shown this many times smaller at most.
 const SMALLEST: usize = 64;
-/// Longer cells of tables are sentences.
+/// Longer cells of tables are sentences, longer heads words that may break.
 const WORDS: usize = 48;
+const HEAD: usize = 8;
+/// Tables with more columns are small print: all of them are seen on a screen 1440 pixels wide.
+const COLUMNS: usize = 10;
 
 /// Layout; colours come from the theme.
 const STYLE: &str = "
@@ -41,7 +44,9 @@ th:first-child, td:first-child { text-align: left; }
 th.text, td.text { text-align: left; }
 td.words { white-space: normal; min-width: 14rem; }
 td.parts { white-space: normal; }
-th { white-space: normal; } .whole { white-space: nowrap; }
+td.text:first-child { white-space: normal; min-width: 8rem; }
+th.words { white-space: normal; } .whole { white-space: nowrap; }
+table.dense { font-size: .85rem; } table.dense th, table.dense td { padding: .2rem .35rem; }
 table.pictures th, table.pictures td { border: 0; padding: 2px; text-align: center; font-size: .85rem;
   font-weight: 500; white-space: normal; }
 table.pictures th[scope=row] { writing-mode: vertical-rl; transform: rotate(180deg); color: var(--muted); }
@@ -257,17 +262,21 @@ impl Page {
 
 fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> String {
     let classes: Vec<&str> = (0..head.len()).map(|column| class(column, rows)).collect();
+    let dense = head.len() > COLUMNS;
     let head: Vec<String> = head
         .iter()
         .zip(&classes)
-        .map(|(cell, class)| format!("<th scope=\"col\" class=\"{class}\">{}</th>", escape(cell)))
+        .map(|(cell, class)| {
+            let words = if cell.chars().count() > HEAD { " words" } else { "" };
+            format!("<th scope=\"col\" class=\"{class}{words}\">{}</th>", escape(cell))
+        })
         .collect();
     let row = |row: &Vec<String>| {
         let cells: Vec<String> = row
             .iter()
             .zip(&classes)
             .map(|(cell, class)| {
-                let parts = parts(cell);
+                let parts = parts(cell, dense);
                 let words = match parts.as_slice() {
                     [_, _, ..] => " parts",
                     _ if cell.len() > WORDS => " words",
@@ -285,14 +294,16 @@ fn table(caption: &str, head: &[&str], rows: &[Vec<String>]) -> String {
         format!("<tr>{}</tr>\n", cells.concat())
     };
     format!(
-        "<div class=\"wide\"><table>{caption}<thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
+        "<div class=\"wide\"><table{}>{caption}<thead><tr>{}</tr></thead><tbody>\n{}</tbody></table></div>\n",
+        if dense { " class=\"dense\"" } else { "" },
         head.concat(),
         joined(rows, row)
     )
 }
 
-/// A value, its error and what follows: where a wide table may break a cell. Words are one part.
-fn parts(cell: &str) -> Vec<&str> {
+/// A value, its error and what follows: where a wide table may break a cell. Words are one part. A
+/// dense table may break intervals, too.
+fn parts(cell: &str, dense: bool) -> Vec<&str> {
     let numbers = |c: char| c.is_ascii_digit() || "+-[\u{2212}".contains(c);
     if !cell.starts_with(numbers) || cell.len() > WORDS {
         return vec![cell];
@@ -304,7 +315,8 @@ fn parts(cell: &str) -> Vec<&str> {
             [" [", " \u{b1} ", "; "].iter().filter_map(|mark| Some((rest.find(mark)?, mark)));
         let after = rest.find("] ").map(|at| at + 1);
         let at = before.map(|(at, mark)| at + usize::from(*mark == "; ")).chain(after).min();
-        let Some(at) = at else { break };
+        let within = rest.find(", ").filter(|_| dense).map(|at| at + 1);
+        let Some(at) = at.into_iter().chain(within).min() else { break };
         parts.push(&rest[..at]);
         rest = rest[at..].trim_start();
     }
@@ -381,8 +393,9 @@ mod tests {
             ("0 to 160", vec!["0 to 160"]),
             ("words [in brackets]", vec!["words [in brackets]"]),
         ] {
-            assert_eq!(parts(cell), expected);
+            assert_eq!(parts(cell, false), expected);
         }
+        assert_eq!(parts("[-1.4 %, +0.9 %] agree", true), ["[-1.4 %,", "+0.9 %]", "agree"]);
         let mut page = Page::new("t");
         page.table("c", &["a", "b"], &[vec!["x".into(), "1.2 [1.0, 1.4]".into()]]);
         let html = page.html(DEFAULT_BUDGET).unwrap().0;
