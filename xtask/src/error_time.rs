@@ -45,7 +45,7 @@ pub(crate) struct ErrorTimeArgs {
     /// Runs of each method, at least 3
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u64).range(3..))]
     replicates: u64,
-    /// Seed of the first run
+    /// Seed; each run has one of its own
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Wall time of a reference that has to be made

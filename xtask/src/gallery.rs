@@ -117,6 +117,7 @@ fn order(scene: &GalleryScene, args: &GalleryArgs) -> Result<Order, Box<dyn std:
         beside,
         seconds: args.time,
         budget: args.budget,
+        sound: true,
     })
 }
 

@@ -310,6 +310,7 @@ mod tests {
             beside,
             seconds: 1.0,
             budget: 1.0,
+            sound: true,
         };
         let keep = |beside| order(beside).keep(&scene.name, folder.path()).expect("a file");
         keep(Beside::Nobody("path: it leaves out light of lasers".into()));

@@ -39,6 +39,8 @@ pub struct Order {
     pub seconds: f64,
     /// Largest size of the viewer's page \[MB\].
     pub budget: f64,
+    /// Whether its results are sound; those that are not are made again.
+    pub sound: bool,
 }
 
 impl Order {
@@ -113,6 +115,7 @@ mod tests {
             beside: Beside::Method("path".into()),
             seconds: 60.0,
             budget: 12.0,
+            sound: true,
         };
         order.keep("window", gallery).expect("a file");
         assert!(!order.is_done("window", gallery), "nothing was rendered");
@@ -125,6 +128,7 @@ mod tests {
         let nobody = Beside::Nobody("none".into());
         for other in [
             Order { seconds: 61.0, ..order.clone() },
+            Order { sound: false, ..order.clone() },
             Order { beside: nobody, ..order.clone() },
             Order { scene: Value::Null, ..order.clone() },
             Order { commit: "abd".into(), ..order.clone() },

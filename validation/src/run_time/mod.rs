@@ -49,7 +49,7 @@ pub struct RunTimePlan<'a> {
     pub time: Duration,
     /// Runs of each method, at least 3.
     pub replicates: u64,
-    /// Seed of the first run.
+    /// Seed: each run has one of its own ([`tpb_optics::seed_of`]).
     pub seed: u64,
     /// Where and how it is measured; noted, not used.
     pub circumstances: Circumstances,

@@ -84,7 +84,7 @@ impl Program {
             )),
         }
         self.view(scene, &shown, &notes, order.budget, &out.join(format!("{name}.html")))?;
-        order.keep(name, out)?;
+        Order { sound, ..order.clone() }.keep(name, out)?;
         Ok(sound)
     }
 
