@@ -50,6 +50,7 @@ table.dense { font-size: .85rem; } table.dense th, table.dense td { padding: .2r
 table.pictures th, table.pictures td { border: 0; padding: 2px; text-align: center; font-size: .85rem;
   font-weight: 500; white-space: normal; }
 table.pictures th[scope=row] { writing-mode: vertical-rl; transform: rotate(180deg); color: var(--muted); }
+table.pictures th[scope=row] span { display: block; max-height: 8rem; margin: 0 auto; }
 table.pictures tbody td { width: 16rem; }
 table.pictures img { display: block; width: 100%; min-width: 8rem; max-width: 16rem;
   background: var(--stage); }
@@ -158,7 +159,7 @@ impl Page {
             "<figure><div class=\"wide\"><table class=\"pictures\"><thead><tr><td></td>{head}</tr></thead><tbody>\n"
         ));
         for (name, pictures) in rows {
-            self.push(format!("<tr><th scope=\"row\">{}</th>", escape(name)));
+            self.push(format!("<tr><th scope=\"row\"><span>{}</span></th>", escape(name)));
             for (picture, alt) in pictures {
                 self.push("<td>".to_owned());
                 self.parts.push(Part::Picture(picture.clone(), alt.clone()));
