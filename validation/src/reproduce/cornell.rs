@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use tpb_film::Arrays;
+use tpb_scene::load::LoadedScene;
 
 use super::compare::Comparison;
 use super::contest::{self, Contest, Contested, Judge};
@@ -76,23 +77,7 @@ pub fn run(options: &Options, watch: &mut Watch<'_>) -> Result<CornellResult> {
     let loaded = options.load(NAME, &[])?;
     let absorbing = options.load(NAME, &["fog.albedo=0"])?;
     let reference = options.reference(&out);
-    let contest = Contest {
-        loaded: &loaded,
-        absorbing: &absorbing,
-        time: options.time,
-        replicates: options.replicates,
-        seed: options.circumstances.seed,
-        commit: &options.circumstances.commit,
-        command: &options.command,
-        judge: Judge::Rendered {
-            referee: Referee::Path,
-            path: reference.clone(),
-            time: options.reference_time,
-            any_commit: options.old_references,
-        },
-        windows: &WINDOWS,
-        folder: out.join("replicates"),
-    };
+    let contest = contest(options, [&loaded, &absorbing], &out);
     let contested = contest.run(watch)?;
     let result = CornellResult {
         circumstances: options.circumstances.clone(),
@@ -129,6 +114,31 @@ impl Shown<'_> {
         let path = first_with_variance(&self.contested.runs[0], &reference)?;
         let beams = first_with_variance(&self.contested.runs[1], &reference)?;
         Ok([path, beams, reference])
+    }
+}
+
+/// At picture quality, with a reference of its own: the scene, and the same without scattering.
+fn contest<'a>(
+    options: &'a Options,
+    [loaded, absorbing]: [&'a LoadedScene; 2],
+    out: &Path,
+) -> Contest<'a> {
+    Contest {
+        loaded,
+        absorbing,
+        time: options.time,
+        replicates: options.replicates,
+        seed: options.circumstances.seed,
+        commit: &options.circumstances.commit,
+        command: &options.command,
+        judge: Judge::Rendered {
+            referee: Referee::Path,
+            path: options.reference(out),
+            time: options.reference_time,
+            any_commit: options.old_references,
+        },
+        windows: &WINDOWS,
+        folder: out.join("replicates"),
     }
 }
 

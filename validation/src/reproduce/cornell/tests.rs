@@ -143,25 +143,9 @@ fn a_contest_judges_what_was_rendered() {
     let _ = fs::remove_dir_all(&options.out);
     let loaded = options.load(NAME, &[]).unwrap();
     let absorbing = options.load(NAME, &["fog.albedo=0"]).unwrap();
-    let contest = Contest {
-        loaded: &loaded,
-        absorbing: &absorbing,
-        time: options.time,
-        replicates: options.replicates,
-        seed: options.circumstances.seed,
-        commit: &options.circumstances.commit,
-        command: &options.command,
-        judge: Judge::Rendered {
-            referee: Referee::Path,
-            path: options.out.join("reference.npz"),
-            time: options.reference_time,
-            any_commit: false,
-        },
-        windows: &WINDOWS,
-        folder: options.out.join("replicates"),
-    };
+    let contest = contest(&options, [&loaded, &absorbing], &options.out);
     let Contested { comparison, truth, runs, .. } = contest.run(&mut Watch::default()).unwrap();
-    let reference = Arrays::read_npz(&options.out.join("reference.npz")).unwrap();
+    let reference = Arrays::read_npz(&options.reference(&options.out)).unwrap();
     let cubes: Vec<Vec<Cube>> = runs
         .iter()
         .map(|runs| runs.iter().map(|run| Cube::of(&run.arrays(&reference).unwrap())).collect())
