@@ -32,11 +32,11 @@ fn deposit(criterion: &mut Criterion) {
         let mut film = TransientFilm::<1>::new(layout, FilmOptions::default()).expect("fits");
         group.bench_function(name, |b| {
             b.iter(|| {
-                film.add_pass(|strip| {
-                    for pixel in strip.pixels() {
+                film.add_pass(|tile| {
+                    for pixel in tile.pixels() {
                         for i in 0..DEPOSITS_PER_PIXEL {
                             let opl = 0.13 * i as f64;
-                            strip.deposit(pixel, 0.0, &arrival(opl), Spectrum([1.0]));
+                            tile.deposit(pixel, 0.0, &arrival(opl), Spectrum([1.0]));
                         }
                     }
                 })

@@ -2,10 +2,13 @@
 //!
 //! `cargo bench -p tpb-benches` runs all; times are reported, never asserted.
 
+pub mod gathers;
+
 use std::path::Path;
 
 use tpb_film::TransientFilm;
 use tpb_render::{FilmSetup, RenderOptions, with_threads};
+use tpb_scene::load::{Override, load_scene};
 use tpb_scene::{Scene, Transport};
 
 /// A scene that ships in `validation/scenes`, by its name.
@@ -13,9 +16,22 @@ use tpb_scene::{Scene, Transport};
 /// # Panics
 /// If the scene does not load: a broken checkout.
 pub fn shipped_scene(name: &str) -> Scene {
+    sized_scene(name, None)
+}
+
+/// The same with so many pixels along both edges of its film.
+///
+/// # Panics
+/// If the scene does not load: a broken checkout.
+pub fn sized_scene(name: &str, pixels: Option<usize>) -> Scene {
+    let overrides: Vec<Override> = pixels
+        .iter()
+        .flat_map(|n| ["width", "height"].map(|edge| format!("sensor.film.{edge}={n}")))
+        .map(|text| Override::parse(&text).expect("an override"))
+        .collect();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../validation/scenes");
     let file = folder.join(format!("{name}.json"));
-    tpb_scene::load::load_scene(&file, &[]).expect("shipped scenes load").scene
+    load_scene(&file, &overrides).expect("shipped scenes load").scene
 }
 
 /// The film that an achromatic scene asks for.

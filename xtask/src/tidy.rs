@@ -18,6 +18,7 @@ use crate::workspace::{Outcome, complain, root, say};
 const FLOORS: &[(&str, u32)] = &[
     ("tpb-optics", 0),
     ("tpb-accel", 0),
+    ("tpb-lanes", 0),
     ("tpb-plot", 0),
     ("tpb-statistics", 0),
     ("tpb-browser", 0),

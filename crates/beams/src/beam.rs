@@ -15,7 +15,7 @@
 
 use glam::DVec3;
 use tpb_optics::{Coefficients, Phase, Spectrum};
-use tpb_scene::MediumId;
+use tpb_scene::{Flight, MediumId, Scene, Span};
 
 /// The largest x with exp(−x) > 0 in f64 is below this.
 const VANISHING_DEPTH: f64 = 745.2;
@@ -91,6 +91,27 @@ pub struct CameraRay<const C: usize> {
     pub phase: Phase,
     /// The refractive index.
     pub eta: f64,
+}
+
+impl<const C: usize> CameraRay<C> {
+    /// What a flight from the eye has in one of its spans, with the medium there; `None` if nothing
+    /// scatters.
+    #[inline]
+    pub fn of_span(scene: &Scene, flight: &Flight, span: &Span) -> Option<(MediumId, Self)> {
+        let id = span.region.medium?;
+        let medium = scene.medium(id);
+        let ray = Self {
+            origin: flight.at(span.start),
+            direction: flight.direction,
+            length: span.end - span.start,
+            opl: flight.opl(span.start),
+            throughput: flight.transmittance(scene, span.start),
+            coefficients: medium.coefficients.channels(),
+            phase: medium.phase,
+            eta: span.region.eta,
+        };
+        medium.coefficients.scatters().then_some((id, ray))
+    }
 }
 
 impl<const C: usize> Attenuation<C> {

@@ -1,56 +1,36 @@
-//! Beams in a hierarchy of boxes, found by camera rays.
+//! The gather of rays that mirrors, glass or rough surfaces have turned: they form no lattice.
 //!
-//! A long beam in one box is hit by rays far from it, so beams are stored in pieces: not copies
-//! of the beam (start time and transmittance belong to its true origin), but an interval of it
-//! with a box of its own. A ray may meet several pieces of a beam; the piece that holds the
-//! kernel's reporting point ([`RayBeamKernel`]) counts the pair. Pieces are half-open and share
-//! their ends, the first reaching to −∞ and the last to +∞ (lengths are the kernel's business), so
-//! that exactly one piece holds any point; and since the reporting point lies within the radius
-//! of it, its box is met by the ray. Boxes are culled in f32, conservatively; the pair is then
-//! evaluated in f64.
-//!
-//! Pieces are even up to a length at which they would become too many, as in fog without walls,
-//! where beams are as long as light can be seen; from there on they grow geometrically.
-//!
-//! The box of a piece from a to b with unit direction d is that of its ends, grown along axis i by
-//! R √(1 − d_i²): the radius acts across the beam only. Where a beam ends, kernels with round ends
-//! need a ball around the end as well.
+//! Neighbours in the image still travel much the same way. Rays are taken in bundles, these in
+//! smaller ones, down to 16 rays; at each step the beams that come near a bundle
+//! (`bundle.rs`) are copied for the smaller bundles in it. What is left is tested ray by ray,
+//! 16 at a time, and then evaluated by the kernel. Nothing is built but the list of beams.
 
-use glam::DVec3;
-use tpb_accel::{Aabb, Bvh, Quality};
+use std::ops::Range;
+
+use rayon::prelude::*;
+use tpb_lanes::{Simd, WithSimd, dispatch};
 use tpb_scene::MediumId;
 
 use crate::beam::{Beam, CameraRay};
+use crate::bundle::{BLOCK, BeamBlock, Bundle, Frame, Line, Numbers, RayBlock};
 use crate::kernel::RayBeamKernel;
 
-/// Even pieces per beam at most; then they grow.
-const EVEN_PIECES: f64 = 12.0;
-/// Growth of a piece over the one before, beyond the even ones.
-const GROWTH: f64 = 2.0;
-
-/// A part of a beam, with what the geometric test needs.
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    origin: DVec3,
-    direction: DVec3,
-    length: f64,
-    beam: u32,
-    /// Feet in `start..end` belong to this piece.
-    start: f32,
-    end: f32,
-}
+/// Rays of a bundle, from the largest to the smallest.
+const BUNDLES: [usize; 3] = [512, 64, BLOCK];
 
 /// The beams of one pass.
 pub struct BeamMap<'a, const C: usize> {
     beams: &'a [Beam<C>],
-    pieces: Vec<Piece>,
-    bvh: Bvh,
+    frame: Frame,
+    blocks: Vec<BeamBlock>,
+    /// The kernel's reach in the frame.
+    radius: f32,
 }
 
 /// Pairs that a query tested and accepted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Pairs {
-    /// Pieces whose pair was evaluated.
+    /// Pairs that were evaluated.
     pub tested: u64,
     /// Pairs that contributed.
     pub accepted: u64,
@@ -65,100 +45,148 @@ impl Pairs {
 }
 
 impl<'a, const C: usize> BeamMap<'a, C> {
-    /// For queries with `kernel`, with pieces of about `piece_length` \[m\] (may be infinite).
-    pub fn new<K: RayBeamKernel>(kernel: K, beams: &'a [Beam<C>], piece_length: f64) -> Self {
-        let radius = kernel.radius();
-        let mut pieces = Vec::with_capacity(beams.len());
-        let mut boxes = Vec::with_capacity(beams.len());
-        for (index, beam) in beams.iter().enumerate() {
-            split(beam, index as u32, piece_length, |piece, from, to| {
-                let ends = [from, to].map(|s| beam.origin + s * beam.direction);
-                let d = beam.direction;
-                let across = (DVec3::ONE - d * d).max(DVec3::ZERO).map(f64::sqrt) * radius;
-                let Aabb { mut min, mut max } = Aabb::around(ends);
-                (min, max) = (min - across, max + across);
-                if K::ROUND_ENDS {
-                    let is_end = [piece.start == f32::NEG_INFINITY, piece.end == f32::INFINITY];
-                    for (end, _) in ends.into_iter().zip(is_end).filter(|(_, is_end)| *is_end) {
-                        (min, max) = (min.min(end - radius), max.max(end + radius));
-                    }
-                }
-                pieces.push(piece);
-                boxes.push(Aabb { min, max });
-            });
-        }
-        let bvh = Bvh::build(&boxes, Quality::FastBuild);
-        Self { beams, pieces, bvh }
+    /// For queries with `kernel`.
+    pub fn new<K: RayBeamKernel>(kernel: K, beams: &'a [Beam<C>]) -> Self {
+        let frame = Frame::new(beams, kernel.radius());
+        let blocks = beams
+            .par_chunks(BLOCK)
+            .enumerate()
+            .map(|(number, chunk)| BeamBlock::new(&frame, chunk, number * BLOCK))
+            .collect();
+        Self { beams, frame, blocks, radius: frame.radius(kernel.radius()) }
     }
 
-    /// Shows `found` every beam of `medium` that the kernel joins to the ray, once.
-    #[inline]
+    /// Shows `found` every beam that the kernel joins to a ray, with the number of the ray: for each ray
+    /// in the order of the beams. Rays that are near each other should be near each other in `rays`.
     pub fn query<K: RayBeamKernel>(
         &self,
         kernel: K,
-        medium: MediumId,
-        ray: &CameraRay<C>,
-        mut found: impl FnMut(&Beam<C>, &K::Meeting),
+        rays: &[(MediumId, CameraRay<C>)],
+        found: impl FnMut(usize, &Beam<C>, &K::Meeting),
     ) -> Pairs {
-        let mut pairs = Pairs::default();
-        self.bvh.visit(ray.origin, ray.direction, ray.length, |index| {
-            let piece = &self.pieces[index];
-            pairs.tested += 1;
-            let meeting = kernel.meet(
-                piece.origin,
-                piece.direction,
-                piece.length,
-                ray.origin,
-                ray.direction,
-                ray.length,
-            )?;
-            let foot = K::reporting_point(&meeting);
-            if f64::from(piece.start) <= foot && foot < f64::from(piece.end) {
-                let beam = &self.beams[piece.beam as usize];
-                if beam.medium == medium {
-                    pairs.accepted += 1;
-                    found(beam, &meeting);
-                }
-            }
-            None
-        });
-        pairs
+        let lines: Vec<_> = rays.iter().map(|(_, ray)| self.frame.line(ray)).collect();
+        dispatch(Query {
+            map: self,
+            kernel,
+            rays,
+            lines: &lines,
+            found,
+            near: std::array::from_fn(|_| Vec::new()),
+            close: Vec::with_capacity(BLOCK),
+            pairs: Pairs::default(),
+        })
     }
 }
 
-/// Cuts a beam: `add` gets each piece, and the part of the beam that its box must hold.
-fn split<const C: usize>(
-    beam: &Beam<C>,
-    index: u32,
-    piece_length: f64,
-    mut add: impl FnMut(Piece, f64, f64),
-) {
-    let length = beam.length;
-    let even = (length / piece_length).ceil().clamp(1.0, EVEN_PIECES);
-    let mut step = if even < EVEN_PIECES { length / even } else { piece_length };
-    let mut piece = Piece {
-        origin: beam.origin,
-        direction: beam.direction,
-        length,
-        beam: index,
-        start: f32::NEG_INFINITY,
-        end: f32::INFINITY,
-    };
-    let (mut from, mut count) = (0.0_f64, 1.0);
-    loop {
-        // Boundaries are f32 for the pieces and for the boxes alike. Not a sliver at the end.
-        let to = (from + step) as f32;
-        if f64::from(to) + 0.5 * step >= length || f64::from(to) <= from {
-            piece.end = f32::INFINITY;
-            add(piece, from, length);
-            return;
+/// A query on its way.
+struct Query<'q, 'a, const C: usize, K, F> {
+    map: &'q BeamMap<'a, C>,
+    kernel: K,
+    rays: &'q [(MediumId, CameraRay<C>)],
+    lines: &'q [Option<Line>],
+    found: F,
+    /// Beams near the bundle of each size that is under way.
+    near: [Vec<BeamBlock>; BUNDLES.len()],
+    /// Beams that come close to some ray of a block, and to which.
+    close: Vec<(Beam<C>, Numbers)>,
+    pairs: Pairs,
+}
+
+impl<const C: usize, K, F> WithSimd for Query<'_, '_, C, K, F>
+where
+    K: RayBeamKernel,
+    F: FnMut(usize, &Beam<C>, &K::Meeting),
+{
+    type Output = Pairs;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(mut self, simd: S) -> Pairs {
+        let [large, middle, small] = BUNDLES;
+        let end = self.rays.len();
+        for first in (0..end).step_by(large) {
+            let large_end = (first + large).min(end);
+            if !self.cull(simd, 0, first..large_end) {
+                continue;
+            }
+            for first in (first..large_end).step_by(middle) {
+                let middle_end = (first + middle).min(large_end);
+                if !self.cull(simd, 1, first..middle_end) {
+                    continue;
+                }
+                for first in (first..middle_end).step_by(small) {
+                    let small_end = (first + small).min(middle_end);
+                    if self.cull(simd, 2, first..small_end) {
+                        self.meet(simd, first..small_end);
+                    }
+                }
+            }
         }
-        piece.end = to;
-        add(piece, from, f64::from(to));
-        (from, piece.start) = (f64::from(to), to);
-        count += 1.0;
-        if count > EVEN_PIECES {
-            step *= GROWTH;
+        self.pairs
+    }
+}
+
+impl<const C: usize, K, F> Query<'_, '_, C, K, F>
+where
+    K: RayBeamKernel,
+    F: FnMut(usize, &Beam<C>, &K::Meeting),
+{
+    /// Finds the beams near a bundle among those near the bundle that it is in; whether there are any.
+    #[inline(always)]
+    fn cull<S: Simd>(&mut self, simd: S, size: usize, rays: Range<usize>) -> bool {
+        let (larger, smaller) = self.near.split_at_mut(size);
+        let from = larger.last().map_or(&self.map.blocks, |near| near);
+        let near = &mut smaller[0];
+        near.clear();
+        let Some(bundle) = Bundle::around(self.lines[rays].iter().flatten().copied()) else {
+            return false;
+        };
+        let mut count = 0;
+        for block in from {
+            let is_near = block.near(simd, &bundle, self.map.radius);
+            for (lane, is_near) in is_near.into_iter().enumerate() {
+                if is_near != 0.0 {
+                    block.push(lane, near, count);
+                    count += 1;
+                }
+            }
+        }
+        count > 0
+    }
+
+    /// The rays of a smallest bundle against the beams near it.
+    #[inline(always)]
+    fn meet<S: Simd>(&mut self, simd: S, rays: Range<usize>) {
+        let block = RayBlock::new(&self.lines[rays.clone()]);
+        for beams in &self.near[BUNDLES.len() - 1] {
+            self.close.clear();
+            for (lane, &index) in beams.index.iter().enumerate() {
+                let near = block.near(simd, beams, lane, self.map.radius);
+                // Copied before any is evaluated: memory is slow, but many answers come together.
+                if near.iter().sum::<f32>() > 0.0 && index != BeamBlock::NONE {
+                    self.close.push((self.map.beams[index as usize], near));
+                }
+            }
+            for (beam, near) in &self.close {
+                for (number, &is_near) in rays.clone().zip(near) {
+                    let (medium, ray) = &self.rays[number];
+                    if is_near == 0.0 || *medium != beam.medium {
+                        continue;
+                    }
+                    self.pairs.tested += 1;
+                    let meeting = self.kernel.meet(
+                        beam.origin,
+                        beam.direction,
+                        beam.length,
+                        ray.origin,
+                        ray.direction,
+                        ray.length,
+                    );
+                    if let Some(meeting) = meeting {
+                        self.pairs.accepted += 1;
+                        (self.found)(number, beam, &meeting);
+                    }
+                }
+            }
         }
     }
 }

@@ -22,21 +22,33 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use tpb_film::{Arrival, Ledger, Strip};
+use tpb_film::{Arrival, Ledger, Tile};
 use tpb_optics::{Spectrum, Stream};
+use tpb_render::PassId;
 use tpb_scene::{Flight, Hit, IntegratorSpec, Plan, Scene, Vertex};
 use tpb_transport::{Carrier, DiffuseLobe, Encounter, Response, Turn, roulette};
 
-use crate::Settings;
 use crate::beam::{Beam, CameraRay};
 use crate::beam_map::{BeamMap, Pairs};
 use crate::kernel::RayBeamKernel;
+use crate::scan::Lattice;
+use crate::sight::Sights;
+use crate::splat::{Splat, TileRays};
 use crate::surface_map::SurfaceMap;
-use crate::tiles::Tiles;
+use crate::{Settings, stream_item};
 
 /// Steps of the additive recurrence that spreads a pixel's paths evenly over it, from a random
 /// start (Roberts 2018, the R2 sequence: 1/φ and 1/φ² of the plastic number φ).
 const PLASTIC: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
+
+/// Where in their pixels all paths of a sample start, from the pass's random `shift`. Every second
+/// sample is the mirror image of the one before in the pixel's middle: as all pixels share the place, an
+/// odd one out would move the whole image, to first order, and sums over it would be noisier.
+fn sub_pixel(shift: [f64; 2], sample: u32) -> [f64; 2] {
+    let pair = f64::from(sample / 2);
+    let place = [0, 1].map(|axis| (shift[axis] + pair * PLASTIC[axis]).fract());
+    if sample.is_multiple_of(2) { place } else { place.map(|x| 1.0 - x) }
+}
 
 /// All that a pixel's estimate reads.
 pub(crate) struct Camera<'a, const C: usize, K> {
@@ -44,19 +56,21 @@ pub(crate) struct Camera<'a, const C: usize, K> {
     pub(crate) plan: &'a Plan,
     pub(crate) integrator: IntegratorSpec,
     pub(crate) settings: &'a Settings,
-    pub(crate) tiles: &'a Tiles<'a, C>,
+    pub(crate) beams: &'a [Beam<C>],
+    /// What rays straight from the eye may meet.
+    pub(crate) sights: &'a Sights,
+    /// Rows of a tile.
+    pub(crate) tile_edge: usize,
     /// For rays that mirrors, glass or rough surfaces have turned; `None` in scenes without.
-    pub(crate) hierarchy: Option<&'a BeamMap<'a, C>>,
+    pub(crate) turned: Option<&'a BeamMap<'a, C>>,
     pub(crate) photons: &'a SurfaceMap<C>,
     pub(crate) kernel: K,
 }
 
-/// A camera path under way, and where it deposits.
-pub(crate) struct Path<'s, 'f, const C: usize> {
-    strip: &'s mut Strip<'f, C>,
-    pixel: usize,
-    /// Column and row of the pixel.
-    at: (usize, usize),
+/// A camera path under way.
+pub(crate) struct Path<const C: usize> {
+    /// The pixel's place in the tile.
+    place: usize,
     unwarp_opl: f64,
     pub(crate) vertex: Vertex,
     pub(crate) direction: DVec3,
@@ -69,61 +83,92 @@ pub(crate) struct Path<'s, 'f, const C: usize> {
 }
 
 impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
-    /// All camera paths of one pixel.
-    pub(crate) fn render(&self, strip: &mut Strip<'_, C>, pixel: usize, rng: &mut Stream) -> Pairs {
+    /// All camera paths of a tile's pixels.
+    pub(crate) fn render(&self, id: PassId, tile: &mut Tile<'_, C>) -> Pairs {
         let Settings { gather_samples, surface_samples, .. } = *self.settings;
         let gather_samples = if self.plan.beams { gather_samples } else { 0 };
+        let mut streams: Vec<_> = tile
+            .pixels()
+            .map(|pixel| Stream::new(id.seed, id.index, stream_item::pixel(pixel)))
+            .collect();
+        let mut all = Stream::new(id.seed, id.index, stream_item::FILM);
+        let shift = [all.uniform(), all.uniform()];
         let mut pairs = Pairs::default();
-        let shift = [rng.uniform(), rng.uniform()];
         for sample in 0..gather_samples.max(surface_samples) {
-            let width = self.scene.film.width;
-            let (x, y) = (pixel % width, pixel / width);
-            let [a, b] = PLASTIC.map(|step| f64::from(sample) * step);
-            let (a, b) = (x as f64 + (shift[0] + a).fract(), y as f64 + (shift[1] + b).fract());
-            let direction = self.scene.sensor.direction(a, b);
+            let offset = sub_pixel(shift, sample);
+            let lattice = Lattice::new(&self.scene.sensor, tile, offset);
+            let flights: Vec<_> = lattice
+                .directions()
+                .map(|direction| self.scene.fly(&self.scene.eye(), direction))
+                .collect();
             let share = |samples: u32| (sample < samples).then(|| 1.0 / f64::from(samples));
-            let mut path = Path {
-                strip: &mut *strip,
-                pixel,
-                at: (x, y),
-                unwarp_opl: 0.0,
-                vertex: self.scene.eye(),
-                direction,
-                throughput: Spectrum::ONE,
-                opl: 0.0,
-                events: 0,
-                drawn_with: None,
-            };
             let shares = (share(gather_samples), share(surface_samples));
-            while self.step(&mut path, shares, rng, &mut pairs) && self.survives(&mut path, rng) {}
+            if let Some(share) = shares.0 {
+                pairs.add(self.splat(lattice, &flights, share, tile));
+            }
+            let mut wave: Vec<_> = (0..)
+                .zip(flights)
+                .map(|(place, flight)| (Path::new(self.scene.eye(), place, &flight), flight))
+                .collect();
+            while !wave.is_empty() {
+                let next = wave.into_iter().filter_map(|(mut path, flight)| {
+                    let rng = &mut streams[path.place];
+                    let goes_on = self.arrive(&mut path, &flight, shares.1, rng, tile)
+                        && self.survives(&mut path, rng);
+                    goes_on.then(|| {
+                        let flight = self.scene.fly(&path.vertex, path.direction);
+                        (path, flight)
+                    })
+                });
+                wave = next.collect();
+                if let Some(share) = shares.0 {
+                    pairs.add(self.gather(&wave, share, tile));
+                }
+            }
         }
         pairs
     }
 
-    /// One flight and the surface at its end; whether the path goes on.
-    fn step(
+    /// Beams seen straight from the eye.
+    fn splat(
         &self,
-        path: &mut Path<'_, '_, C>,
-        (gather, surface): (Option<f64>, Option<f64>),
+        lattice: Lattice,
+        flights: &[Flight],
+        share: f64,
+        tile: &mut Tile<'_, C>,
+    ) -> Pairs {
+        let rays = TileRays::new(self.scene, lattice, flights);
+        let band = tile.rows().start / self.tile_edge;
+        let splat = Splat {
+            kernel: self.kernel,
+            beams: self.beams,
+            sights: self.sights,
+            band,
+            rays: &rays,
+            temporal: self.settings.temporal,
+            share,
+        };
+        splat.draw(|depth| self.integrator.counts(depth), tile)
+    }
+
+    /// The surface at the end of a flight; whether the path goes on.
+    fn arrive(
+        &self,
+        path: &mut Path<C>,
+        flight: &Flight,
+        surface: Option<f64>,
         rng: &mut Stream,
-        pairs: &mut Pairs,
+        tile: &mut Tile<'_, C>,
     ) -> bool {
-        let flight = self.scene.fly(&path.vertex, path.direction);
-        if let (0, Some(hit)) = (path.events, &flight.hit) {
-            path.unwarp_opl = flight.opl(hit.distance);
-        }
-        if let Some(share) = gather {
-            self.gather(path, &flight, share, pairs);
-        }
         let Some(hit) = flight.hit else { return false };
-        path.arrive(self.scene, &flight, &hit);
+        path.arrive(self.scene, flight, &hit);
         if path.throughput.is_zero() {
             return false;
         }
         if let Some(share) = surface {
-            self.emission(path, &hit, share);
+            self.emission(path, &hit, share, tile);
         }
-        let encounter = Encounter::new(self.scene, &flight, &hit, Carrier::Importance);
+        let encounter = Encounter::new(self.scene, flight, &hit, Carrier::Importance);
         let goes_on = match encounter.respond(rng) {
             Response::Absorbed => false,
             Response::Turned(turn) => {
@@ -132,68 +177,68 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             }
             Response::Diffuse(lobe) => {
                 if let (Some(share), false) = (surface, lobe.reflectance.is_zero()) {
-                    self.direct(path, &lobe, share, rng);
-                    self.indirect(path, &hit, &lobe, share);
+                    self.direct(path, &lobe, share, (rng, tile));
+                    self.indirect(path, &hit, &lobe, (share, tile));
                 }
                 false
             }
-            Response::Rough(lobe) => self.meet_rough(path, &lobe, surface, rng),
+            Response::Rough(lobe) => self.meet_rough(path, &lobe, surface, (rng, tile)),
         };
         path.events += 1;
         goes_on && self.integrator.reaches(path.events + 1) && !path.throughput.is_zero()
     }
 
-    /// Beams seen along a flight.
-    fn gather(&self, path: &mut Path<'_, '_, C>, flight: &Flight, share: f64, pairs: &mut Pairs) {
-        let temporal = self.settings.temporal;
-        for span in &flight.spans {
-            let Some(id) = span.region.medium else { continue };
-            let medium = self.scene.medium(id);
-            if !medium.coefficients.scatters() {
-                continue;
+    /// Beams seen along flights that surfaces have turned.
+    fn gather(&self, wave: &[(Path<C>, Flight)], share: f64, tile: &mut Tile<'_, C>) -> Pairs {
+        let Some(map) = self.turned else { return Pairs::default() };
+        let columns = tile.columns().len();
+        let mut turned = Vec::with_capacity(wave.len());
+        for (path, flight) in wave {
+            for span in &flight.spans {
+                let Some((id, mut ray)) = CameraRay::of_span(self.scene, flight, span) else {
+                    continue;
+                };
+                ray.opl += path.opl;
+                ray.throughput = path.throughput * ray.throughput;
+                turned.push((path, (id, ray)));
             }
-            let ray = CameraRay {
-                origin: flight.at(span.start),
-                direction: flight.direction,
-                length: span.end - span.start,
-                opl: path.opl + flight.opl(span.start),
-                throughput: path.throughput * flight.transmittance(self.scene, span.start),
-                coefficients: medium.coefficients.channels(),
-                phase: medium.phase,
-                eta: span.region.eta,
-            };
-            let events = path.events;
-            let add = |beam: &Beam<C>, meeting: &K::Meeting| {
-                if self.integrator.counts(beam.depth + events) {
-                    let contribution = self.kernel.contribution(meeting, beam, &ray);
-                    let target = (&mut *path.strip, path.pixel, path.unwarp_opl);
-                    contribution.deposit(temporal, share, target);
-                }
-            };
-            pairs.add(if events == 0 {
-                self.tiles.query(self.kernel, id, path.at, &ray, add)
-            } else {
-                let map =
-                    self.hierarchy.expect("scenes with shapes that turn rays have a hierarchy");
-                map.query(self.kernel, id, &ray, add)
-            });
         }
+        // Neighbours in the image that go the same way see much the same.
+        turned.sort_by_key(|(path, (_, ray))| {
+            let octant = ray.direction.to_array().map(|component| component < 0.0);
+            (octant, morton(path.place % columns, path.place / columns))
+        });
+        let (paths, rays): (Vec<_>, Vec<_>) = turned.into_iter().unzip();
+        map.query(self.kernel, &rays, |number, beam, meeting| {
+            let (path, (_, ray)) = (paths[number], &rays[number]);
+            if self.integrator.counts(beam.depth + path.events) {
+                let contribution = self.kernel.contribution(meeting, beam, ray);
+                let target = (&mut *tile, path.place, path.unwarp_opl);
+                contribution.deposit(self.settings.temporal, share, target);
+            }
+        })
     }
 
     /// Light of an emitter that is seen.
-    fn emission(&self, path: &mut Path<'_, '_, C>, hit: &Hit, share: f64) {
+    fn emission(&self, path: &mut Path<C>, hit: &Hit, share: f64, tile: &mut Tile<'_, C>) {
         if !self.integrator.counts(path.events + 1) {
             return;
         }
         if let Some(radiance) = self.scene.emitted::<C>(hit, path.direction) {
             let share = share * self.hit_weight(path, hit);
             let energy = path.throughput * radiance * share;
-            path.deposit(path.opl, energy);
+            path.deposit(path.opl, energy, tile);
         }
     }
 
     /// Next-event estimation at a diffuse surface.
-    fn direct(&self, path: &mut Path<'_, '_, C>, lobe: &DiffuseLobe, share: f64, rng: &mut Stream) {
+    fn direct(
+        &self,
+        path: &mut Path<C>,
+        lobe: &DiffuseLobe,
+        share: f64,
+        (rng, tile): (&mut Stream, &mut Tile<'_, C>),
+    ) {
         if !self.plan.next_event_estimation || !self.integrator.counts(path.events + 2) {
             return;
         }
@@ -214,13 +259,19 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             if let Some(flight) = way {
                 let left = flight.transmittance(self.scene, light.distance);
                 let energy = reflected * light.flux * left * (cosine / point.pdf);
-                path.deposit(path.opl + flight.opl(light.distance), energy);
+                path.deposit(path.opl + flight.opl(light.distance), energy, tile);
             }
         }
     }
 
     /// The density of surface photons.
-    fn indirect(&self, path: &mut Path<'_, '_, C>, hit: &Hit, lobe: &DiffuseLobe, share: f64) {
+    fn indirect(
+        &self,
+        path: &mut Path<C>,
+        hit: &Hit,
+        lobe: &DiffuseLobe,
+        (share, tile): (f64, &mut Tile<'_, C>),
+    ) {
         if !self.plan.surface_photons {
             return;
         }
@@ -232,13 +283,13 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
         self.photons.query(self.scene, hit, face, |photon| {
             if self.integrator.counts(photon.depth + path.events) {
                 let lag = eta * photon.direction.dot(hit.position - photon.position);
-                path.deposit(path.opl + photon.opl + lag, reflected * photon.power);
+                path.deposit(path.opl + photon.opl + lag, reflected * photon.power, tile);
             }
         });
     }
 
     /// Russian roulette between mirrors.
-    fn survives(&self, path: &mut Path<'_, '_, C>, rng: &mut Stream) -> bool {
+    fn survives(&self, path: &mut Path<C>, rng: &mut Stream) -> bool {
         if path.events < self.integrator.rr_depth {
             return true;
         }
@@ -247,7 +298,21 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
     }
 }
 
-impl<const C: usize> Path<'_, '_, C> {
+impl<const C: usize> Path<C> {
+    /// Before its first flight.
+    fn new(eye: Vertex, place: usize, flight: &Flight) -> Self {
+        Self {
+            place,
+            unwarp_opl: flight.hit.as_ref().map_or(0.0, |hit| flight.opl(hit.distance)),
+            vertex: eye,
+            direction: flight.direction,
+            throughput: Spectrum::ONE,
+            opl: 0.0,
+            events: 0,
+            drawn_with: None,
+        }
+    }
+
     /// Moves to the end of a flight.
     fn arrive(&mut self, scene: &Scene, flight: &Flight, hit: &Hit) {
         self.throughput *= flight.transmittance(scene, hit.distance);
@@ -268,7 +333,14 @@ impl<const C: usize> Path<'_, '_, C> {
         self.drawn_with = None;
     }
 
-    pub(crate) fn deposit(&mut self, opl: f64, energy: Spectrum<C>) {
-        self.strip.deposit(self.pixel, self.unwarp_opl, &Arrival::Instant(opl), energy);
+    pub(crate) fn deposit(&self, opl: f64, energy: Spectrum<C>, tile: &mut Tile<'_, C>) {
+        tile.deposit_at(self.place, self.unwarp_opl, &Arrival::Instant(opl), energy);
     }
+}
+
+/// Number of a point on the curve that keeps neighbours together (Morton 1966): the bits of both
+/// coordinates in turn.
+fn morton(x: usize, y: usize) -> u64 {
+    let spread = |v: usize| (0..32).map(|bit| (v as u64 >> bit & 1) << (2 * bit)).sum::<u64>();
+    spread(x) | spread(y) << 1
 }

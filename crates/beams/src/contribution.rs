@@ -1,6 +1,6 @@
 //! What one beam adds to one camera ray: an energy, and when it arrives.
 
-use tpb_film::{Arrival, Strip, TemporalProfile};
+use tpb_film::{Arrival, TemporalProfile, Tile};
 use tpb_optics::Spectrum;
 
 use crate::Temporal;
@@ -45,18 +45,18 @@ pub enum Spread<const C: usize> {
 }
 
 impl<const C: usize> Contribution<C> {
-    /// Adds it, times `weight`, to a pixel.
+    /// Adds it, times `weight`, to the pixel at `place` of a tile.
     #[inline]
     pub fn deposit(
         &self,
         temporal: Temporal,
         weight: f64,
-        (strip, pixel, unwarp_opl): (&mut Strip<'_, C>, usize, f64),
+        (tile, place, unwarp_opl): (&mut Tile<'_, C>, usize, f64),
     ) {
         let &Self { start, end, energy, .. } = self;
         let energy = energy * weight;
         if end == start {
-            strip.deposit(pixel, unwarp_opl, &Arrival::Instant(start), energy);
+            tile.deposit_at(place, unwarp_opl, &Arrival::Instant(start), energy);
             return;
         }
         let profile = match (temporal, self.spread) {
@@ -72,7 +72,7 @@ impl<const C: usize> Contribution<C> {
                 };
                 let density: &(dyn Fn(f64) -> Spectrum<C> + Sync) = &density;
                 let profile = TemporalProfile::General { start, end, breaks: &[], density };
-                strip.deposit(pixel, unwarp_opl, &Arrival::Profile(profile), energy);
+                tile.deposit_at(place, unwarp_opl, &Arrival::Profile(profile), energy);
                 return;
             }
             (Temporal::Exact, Spread::Swept(swept)) => {
@@ -86,10 +86,10 @@ impl<const C: usize> Contribution<C> {
                     *opl = start + metres * (tau - first);
                 }
                 let profile = TemporalProfile::General { start, end, breaks, density };
-                strip.deposit(pixel, unwarp_opl, &Arrival::Profile(profile), energy);
+                tile.deposit_at(place, unwarp_opl, &Arrival::Profile(profile), energy);
                 return;
             }
         };
-        strip.deposit(pixel, unwarp_opl, &Arrival::Profile(profile), energy);
+        tile.deposit_at(place, unwarp_opl, &Arrival::Profile(profile), energy);
     }
 }

@@ -1,23 +1,21 @@
 //! What the gather asks of a blur kernel.
 
 use glam::DVec3;
+use tpb_film::Tile;
+use tpb_lanes::Simd;
 
 use crate::beam::{Beam, CameraRay};
 use crate::contribution::Contribution;
+use crate::scan::Knot;
+use crate::splat::{Drawn, TileRays};
 
 /// A blur kernel for pairs of a beam and a camera ray; a pure function of the pair.
 ///
 /// A kernel accepts a pair only if some point of the ray (within its segment) lies within the
-/// radius of some point of the beam (within *its* segment). For one such pair of points, the beam's
-/// is the *reporting point*: a beam may be stored in pieces, and the piece that holds the reporting
-/// point is the one that counts the pair. It is the foot of the ray's point, unless the kernel has
-/// [`RayBeamKernel::ROUND_ENDS`] and it is an end of the beam.
+/// radius of some point of the beam (within *its* segment).
 pub trait RayBeamKernel: Copy + Sync {
     /// The geometry of an accepted pair.
     type Meeting;
-
-    /// Whether the kernel reaches beyond the ends of a beam, by its radius in all directions.
-    const ROUND_ENDS: bool;
 
     /// How far it reaches \[m\].
     fn radius(self) -> f64;
@@ -32,9 +30,6 @@ pub trait RayBeamKernel: Copy + Sync {
         ray_direction: DVec3,
         ray_length: f64,
     ) -> Option<Self::Meeting>;
-
-    /// The reporting point: distance along the beam \[m\].
-    fn reporting_point(meeting: &Self::Meeting) -> f64;
 
     /// The energy and its arrival.
     fn contribution<const C: usize>(
@@ -59,5 +54,19 @@ pub trait RayBeamKernel: Copy + Sync {
             ray.length,
         )?;
         Some(self.contribution(&meeting, beam, ray))
+    }
+
+    /// Adds what a beam sends to the rays at `knots` of a tile; returns how many pairs were
+    /// accepted.
+    #[inline]
+    fn draw<S: Simd, const C: usize>(
+        self,
+        _: S,
+        drawn: &Drawn<'_, C>,
+        rays: &TileRays<'_, C>,
+        knots: &[Knot],
+        tile: &mut Tile<'_, C>,
+    ) -> u64 {
+        drawn.one_by_one(self, rays, knots.iter().map(|&knot| rays.lattice.place(knot)), tile)
     }
 }

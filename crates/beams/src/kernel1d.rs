@@ -21,11 +21,16 @@
 //! photon points and beams", section 5; Marco et al. 2017 with its equation 5 for time.)
 
 use glam::DVec3;
+use tpb_film::Tile;
+use tpb_lanes::Simd;
 use tpb_optics::Spectrum;
 
 use crate::beam::{Beam, CameraRay};
 use crate::contribution::{Contribution, Spread};
 use crate::kernel::RayBeamKernel;
+use crate::scan::Knot;
+use crate::shade::{Shade1d, shade};
+use crate::splat::{Drawn, TileRays};
 
 /// The kernel with its radius.
 #[derive(Clone, Copy, Debug)]
@@ -47,8 +52,6 @@ pub struct Closest {
 
 impl RayBeamKernel for Kernel1d {
     type Meeting = Closest;
-
-    const ROUND_ENDS: bool = false;
 
     fn radius(self) -> f64 {
         self.radius
@@ -79,11 +82,6 @@ impl RayBeamKernel for Kernel1d {
     }
 
     #[inline]
-    fn reporting_point(meeting: &Closest) -> f64 {
-        meeting.along_beam
-    }
-
-    #[inline]
     fn contribution<const C: usize>(
         self,
         closest: &Closest,
@@ -101,5 +99,17 @@ impl RayBeamKernel for Kernel1d {
             energy: scattered * left * (phase / (2.0 * self.radius * sine)),
             spread: Spread::Exponential { depth: Spectrum::ZERO },
         }
+    }
+
+    #[inline(always)]
+    fn draw<S: Simd, const C: usize>(
+        self,
+        simd: S,
+        drawn: &Drawn<'_, C>,
+        rays: &TileRays<'_, C>,
+        knots: &[Knot],
+        tile: &mut Tile<'_, C>,
+    ) -> u64 {
+        shade(simd, (self, Shade1d { radius: self.radius }), drawn, rays, knots, tile)
     }
 }

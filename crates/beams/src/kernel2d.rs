@@ -27,11 +27,16 @@ use std::sync::LazyLock;
 
 use gauss_quad::GaussLegendre;
 use glam::DVec3;
+use tpb_film::Tile;
+use tpb_lanes::Simd;
 use tpb_optics::Spectrum;
 
 use crate::beam::{Attenuation, Beam, CameraRay};
 use crate::contribution::{Contribution, Spread};
 use crate::kernel::RayBeamKernel;
+use crate::scan::Knot;
+use crate::shade::{Shade2d, shade};
+use crate::splat::{Drawn, TileRays};
 
 /// The kernel with its radius.
 #[derive(Clone, Copy, Debug)]
@@ -61,8 +66,6 @@ pub(crate) static RULE: LazyLock<GaussLegendre> =
 
 impl RayBeamKernel for Kernel2d {
     type Meeting = Inside;
-
-    const ROUND_ENDS: bool = false;
 
     fn radius(self) -> f64 {
         self.radius
@@ -99,11 +102,6 @@ impl RayBeamKernel for Kernel2d {
     }
 
     #[inline]
-    fn reporting_point(meeting: &Inside) -> f64 {
-        meeting.foot(meeting.first)
-    }
-
-    #[inline]
     fn contribution<const C: usize>(
         self,
         inside: &Inside,
@@ -131,6 +129,18 @@ impl RayBeamKernel for Kernel2d {
             energy: scattered * integral * (phase / (PI * self.radius * self.radius)),
             spread,
         }
+    }
+
+    #[inline(always)]
+    fn draw<S: Simd, const C: usize>(
+        self,
+        simd: S,
+        drawn: &Drawn<'_, C>,
+        rays: &TileRays<'_, C>,
+        knots: &[Knot],
+        tile: &mut Tile<'_, C>,
+    ) -> u64 {
+        shade(simd, (self, Shade2d { radius: self.radius }), drawn, rays, knots, tile)
     }
 }
 

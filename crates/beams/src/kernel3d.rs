@@ -19,9 +19,9 @@
 //! same with a = sigma_t √g/sinψ. Cut ellipses, deep ones and coloured short beams are integrated
 //! by the film's quadrature, whose rule the profile goes through anyway.
 //!
-//! Unlike the discs, spheres reach beyond the ends of the beam. The reporting point is the beam's
-//! point of the closest pair. (Jarosz et al. 2011, "A comprehensive theory of volumetric radiance
-//! estimation using photon points and beams", section 5; the time profile is our derivation.)
+//! Unlike the discs, spheres reach beyond the ends of the beam. (Jarosz et al. 2011, "A comprehensive
+//! theory of volumetric radiance estimation using photon points and beams", section 5; the time
+//! profile is our derivation.)
 
 use std::f64::consts::PI;
 
@@ -69,8 +69,6 @@ const LARGEST_SERIES: f64 = 4.0;
 impl RayBeamKernel for Kernel3d {
     type Meeting = Closest;
 
-    const ROUND_ENDS: bool = true;
-
     fn radius(self) -> f64 {
         self.radius
     }
@@ -104,11 +102,6 @@ impl RayBeamKernel for Kernel3d {
         let offset = w + along_ray * ray_direction - along_beam * direction;
         let near = offset.length_squared() < self.radius * self.radius;
         near.then_some(Closest { along_beam, along_ray, offset })
-    }
-
-    #[inline]
-    fn reporting_point(meeting: &Closest) -> f64 {
-        meeting.along_beam
     }
 
     #[inline]

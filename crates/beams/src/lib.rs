@@ -6,7 +6,7 @@
 //! 1. [`photons`]: photons leave the emitters, scatter in media and on surfaces, and leave a
 //!    [`beam::Beam`] in each span of a scattering medium and a [`beam::SurfacePhoton`] at each
 //!    diffuse surface.
-//! 2. [`tiles`], [`beam_map`] and [`surface_map`] sort what they left.
+//! 2. [`sight`], [`beam_map`] and [`surface_map`] sort what they left.
 //! 3. The camera's rays gather it: in media by a ray-beam kernel ([`kernel1d`], [`kernel2d`],
 //!    [`kernel3d`]), on surfaces by a disc. Emission seen and direct light on surfaces are computed without blur.
 //!
@@ -34,6 +34,7 @@
 
 pub mod beam;
 pub mod beam_map;
+mod bundle;
 mod camera;
 pub mod contribution;
 mod defaults;
@@ -45,15 +46,21 @@ mod method;
 mod options;
 pub mod photons;
 mod rough;
+pub mod scan;
+mod shade;
+pub mod sight;
+pub mod splat;
 pub mod surface_map;
 pub mod sweep;
-pub mod tiles;
 
 pub use method::PhotonBeams;
 pub use options::{BeamLength, BeamOptions, KernelChoice, OptionError, Settings, Temporal};
 
 /// Items of the random streams: photons count from 0, pixels from 2⁶³.
 pub(crate) mod stream_item {
+    /// What all pixels share.
+    pub(crate) const FILM: u64 = u64::MAX;
+
     /// The stream of a pixel.
     pub(crate) const fn pixel(index: usize) -> u64 {
         (1 << 63) | index as u64

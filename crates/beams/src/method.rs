@@ -1,7 +1,6 @@
 //! The method: one pass traces photons, sorts what they left, and gathers it pixel by pixel.
 
-use tpb_film::TransientFilm;
-use tpb_optics::Stream;
+use tpb_film::{Grain, TransientFilm};
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Plan, Scene};
 
@@ -13,9 +12,9 @@ use crate::kernel1d::Kernel1d;
 use crate::kernel2d::Kernel2d;
 use crate::kernel3d::Kernel3d;
 use crate::photons::PhotonTracer;
+use crate::sight::Sights;
 use crate::surface_map::SurfaceMap;
-use crate::tiles::Tiles;
-use crate::{BeamOptions, KernelChoice, OptionError, Settings, stream_item};
+use crate::{BeamOptions, KernelChoice, OptionError, Settings};
 
 /// The transient photon beams renderer of one scene.
 pub struct PhotonBeams<'a> {
@@ -57,21 +56,25 @@ impl<'a> PhotonBeams<'a> {
         let Self { scene, plan, integrator, settings } = self;
         let integrator = *integrator;
         let radius = kernel.radius();
-        let tiles = &Tiles::new(scene, beams, radius);
+        let tile_edge = film.tile_edge(Grain::Coarse);
+        let rows = (scene.film.height, tile_edge);
+        let sights = &Sights::new(&scene.sensor, beams, radius, rows);
         let turning = [&plan.refracting, &plan.mirrors, &plan.rough];
         let turned = turning.iter().any(|shapes| !shapes.is_empty());
-        let hierarchy = turned.then(|| BeamMap::new(kernel, beams, settings.piece_radii * radius));
-        let hierarchy = hierarchy.as_ref();
-        let camera =
-            Camera { scene, plan, integrator, settings, tiles, hierarchy, photons, kernel };
-        let found = film.add_pass(|strip| {
-            let mut pairs = Pairs::default();
-            for pixel in strip.pixels() {
-                let mut rng = Stream::new(id.seed, id.index, stream_item::pixel(pixel));
-                pairs.add(camera.render(strip, pixel, &mut rng));
-            }
-            pairs
-        });
+        let turned = turned.then(|| BeamMap::new(kernel, beams));
+        let camera = Camera {
+            scene,
+            plan,
+            integrator,
+            settings,
+            beams,
+            sights,
+            tile_edge,
+            turned: turned.as_ref(),
+            photons,
+            kernel,
+        };
+        let found = film.add_pass_by(Grain::Coarse, |tile| camera.render(id, tile));
         let mut pairs = Pairs::default();
         for more in found {
             pairs.add(more);

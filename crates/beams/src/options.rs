@@ -71,8 +71,6 @@ pub struct BeamOptions {
     pub surface_samples: Option<u32>,
     /// Connections to light sources per camera path.
     pub light_samples: Option<u32>,
-    /// Length of the pieces that beams are stored in, in radii.
-    pub piece_radii: Option<f64>,
 }
 
 impl BeamOptions {
@@ -133,8 +131,6 @@ pub struct Settings {
     pub surface_samples: u32,
     /// Connections to light sources per camera path.
     pub light_samples: u32,
-    /// Length of the pieces that beams are stored in, in radii.
-    pub piece_radii: f64,
 }
 
 /// Passes over which radii keep nearly their first value.
@@ -197,7 +193,6 @@ impl Settings {
             gather_samples: options.gather_samples.unwrap_or(2),
             surface_samples: options.surface_samples.unwrap_or(8),
             light_samples: options.light_samples.unwrap_or(4),
-            piece_radii: options.piece_radii.unwrap_or(16.0),
         };
         settings.check()?;
         Ok(settings)
@@ -216,11 +211,7 @@ impl Settings {
     }
 
     fn check(&self) -> Result<(), OptionError> {
-        let lengths = [
-            ("radius", self.radius),
-            ("surface_radius", self.surface_radius),
-            ("piece_radii", self.piece_radii),
-        ];
+        let lengths = [("radius", self.radius), ("surface_radius", self.surface_radius)];
         for (option, found) in lengths {
             // Cubes of radii, and products of them with lengths, stay finite.
             if !(1e-30..=1e30).contains(&found) {

@@ -16,6 +16,7 @@
 //! could bring are not found: a laser's on a rough surface, and a point's that comes there by a
 //! mirror or through glass. The plan says so.
 
+use tpb_film::Tile;
 use tpb_optics::{Spectrum, Stream};
 use tpb_scene::{Hit, Vertex};
 use tpb_transport::{Lobe, RoughLobe, Towards};
@@ -28,14 +29,14 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
     /// paths that end on surfaces, if it is one of them.
     pub(crate) fn meet_rough(
         &self,
-        path: &mut Path<'_, '_, C>,
+        path: &mut Path<C>,
         lobe: &RoughLobe,
         surface: Option<f64>,
-        rng: &mut Stream,
+        (rng, tile): (&mut Stream, &mut Tile<'_, C>),
     ) -> bool {
         path.throughput *= Lobe::<C>::factor(lobe);
         if let Some(share) = surface {
-            self.connect_rough(path, lobe, share, rng);
+            self.connect_rough(path, lobe, share, (rng, tile));
         }
         let Some(drawn) = Lobe::<C>::sample(lobe, rng) else { return false };
         path.throughput *= drawn.weight * (drawn.eta_ratio * drawn.eta_ratio);
@@ -46,7 +47,7 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
     }
 
     /// Weight of an emitter that the path's direction has met.
-    pub(crate) fn hit_weight(&self, path: &Path<'_, '_, C>, hit: &Hit) -> f64 {
+    pub(crate) fn hit_weight(&self, path: &Path<C>, hit: &Hit) -> f64 {
         match path.drawn_with {
             Some(density) if self.plan.next_event_estimation => {
                 let cosine = path.direction.dot(hit.normal).abs();
@@ -60,10 +61,10 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
     /// Next-event estimation, on both sides of rough glass.
     fn connect_rough(
         &self,
-        path: &mut Path<'_, '_, C>,
+        path: &mut Path<C>,
         lobe: &RoughLobe,
         share: f64,
-        rng: &mut Stream,
+        (rng, tile): (&mut Stream, &mut Tile<'_, C>),
     ) {
         if !self.plan.next_event_estimation || !self.integrator.counts(path.events + 2) {
             return;
@@ -85,7 +86,7 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
                 let weight = 1.0 / (1.0 + towards.density / (samples * light.pdf_solid_angle));
                 let scale = towards.radiance_factor() * weight * share / (samples * point.pdf);
                 let energy = path.throughput * light.flux * left * towards.value * scale;
-                path.deposit(path.opl + flight.opl(light.distance), energy);
+                path.deposit(path.opl + flight.opl(light.distance), energy, tile);
             }
         }
     }

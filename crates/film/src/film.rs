@@ -1,10 +1,12 @@
 //! The film: statistics over passes of all pixels and cells.
 //!
-//! A pass is one independent estimate of the whole image. It is rendered strip by strip into
+//! A pass is one independent estimate of the whole image. It is rendered tile by tile into
 //! scratch and then added to the mean (and M2, if variance is asked for) of each cell. The steady
 //! image, the sum over a pixel's cells, has mean and M2 of its own, always. Memory is 8 bytes per
 //! cell, 16 with variance, and 16 per pixel and channel: with the f32 arrays that
 //! [`TransientFilm::develop`] makes, three times those arrays.
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -14,7 +16,7 @@ use crate::FilmError;
 use crate::layout::{Clock, Layout};
 use crate::profile::Workspace;
 use crate::stats::{add_to_means, add_to_moments, variance_factor};
-use crate::strip::{Strip, strip_pixels};
+use crate::tile::{Grain, Tile};
 
 /// Which channels leave the film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -113,43 +115,39 @@ impl<const C: usize> TransientFilm<C> {
         self.non_finite
     }
 
-    /// Runs one pass: `render` is called for each strip, in parallel, and deposits into it; then
-    /// the pass enters the statistics. Returns what `render` returned, in the order of the strips
-    /// (from the first pixel to the last). Strips depend on the film alone: if `render` does not
-    /// depend on the thread either, nor does the film, to the bit.
-    pub fn add_pass<S: Send>(&mut self, render: impl Fn(&mut Strip<'_, C>) -> S + Sync) -> Vec<S> {
+    /// Runs one pass in fine tiles: see [`TransientFilm::add_pass_by`].
+    pub fn add_pass<S: Send>(&mut self, render: impl Fn(&mut Tile<'_, C>) -> S + Sync) -> Vec<S> {
+        self.add_pass_by(Grain::Fine, render)
+    }
+
+    /// Runs one pass: `render` is called for each tile, in parallel, and deposits into it; then the
+    /// pass enters the statistics. Returns what `render` returned, in the order of the tiles (row by
+    /// row from the first pixel's to the last's). Tiles depend on the film and the grain alone: if
+    /// `render` does not depend on the thread either, nor does the film, to the bit.
+    pub fn add_pass_by<S: Send>(
+        &mut self,
+        grain: Grain,
+        render: impl Fn(&mut Tile<'_, C>) -> S + Sync,
+    ) -> Vec<S> {
         self.passes += 1;
         let n = self.passes;
         let (layout, options) = (self.layout, self.options);
         let kept = Self::kept(options.output);
         let clock = layout.time.map(Clock::new);
         let cells = clock.map_or(1, |clock| clock.cells());
-        let strip = strip_pixels(&layout, cells * size_of::<Spectrum<C>>());
-        let stored = if clock.is_some() { cells * kept } else { 0 };
-
-        let mut parts: Vec<Part<'_>> = Vec::with_capacity(layout.pixels().div_ceil(strip));
-        let mut rest = Part {
-            mean: &mut self.mean,
-            squares: &mut self.squares,
-            steady_mean: &mut self.steady_mean,
-            steady_squares: &mut self.steady_squares,
-        };
-        for first in (0..layout.pixels()).step_by(strip) {
-            let pixels = strip.min(layout.pixels() - first);
-            parts.push(rest.split_off(pixels * stored, pixels * kept));
-        }
+        let parts =
+            self.parts(self.tile_edge(grain), if clock.is_some() { cells * kept } else { 0 });
         let scratch = || (Vec::<Spectrum<C>>::new(), Workspace::<C>::default());
         let results: Vec<(S, u64)> = parts
             .into_par_iter()
-            .enumerate()
-            .map_init(scratch, |(buffer, workspace), (index, part)| {
-                let first = index * strip;
-                let pixels = first..first + part.steady_mean.len() / kept;
+            .map_init(scratch, |(buffer, workspace), part| {
+                let area = (part.columns.clone(), part.rows.clone());
                 buffer.clear();
-                buffer.resize(pixels.len() * cells, Spectrum::ZERO);
-                let mut strip = Strip::new(pixels, clock, options.unwarp, buffer, workspace);
-                let result = render(&mut strip);
-                let non_finite = strip.non_finite();
+                buffer.resize(area.0.len() * area.1.len() * cells, Spectrum::ZERO);
+                let mut tile =
+                    Tile::new(area, layout.width, clock, options.unwarp, buffer, workspace);
+                let result = render(&mut tile);
+                let non_finite = tile.non_finite();
                 if kept == C {
                     part.add(buffer, cells, |cell: &Spectrum<C>| cell.0, n);
                 } else {
@@ -160,6 +158,40 @@ impl<const C: usize> TransientFilm<C> {
             .collect();
         self.non_finite += results.iter().map(|r| r.1).sum::<u64>();
         results.into_iter().map(|r| r.0).collect()
+    }
+
+    /// Pixels along an edge of the tiles of a pass (fewer at the right and at the bottom).
+    pub fn tile_edge(&self, grain: Grain) -> usize {
+        let cells = self.layout.time.map_or(1, |time| time.bins + 2);
+        grain.edge(&self.layout, cells * size_of::<Spectrum<C>>())
+    }
+
+    /// The statistics by tiles of `edge` pixels, `stored` cells of each pixel being kept.
+    fn parts(&mut self, edge: usize, stored: usize) -> Vec<Part<'_>> {
+        let Layout { width, height, .. } = self.layout;
+        let kept = Self::kept(self.options.output);
+        let mut rest = RowPart {
+            mean: &mut self.mean,
+            squares: &mut self.squares,
+            steady_mean: &mut self.steady_mean,
+            steady_squares: &mut self.steady_squares,
+        };
+        let mut parts = Vec::with_capacity(width.div_ceil(edge) * height.div_ceil(edge));
+        for top in (0..height).step_by(edge) {
+            let (rows, first) = (top..height.min(top + edge), parts.len());
+            parts.extend((0..width).step_by(edge).map(|left| Part {
+                columns: left..width.min(left + edge),
+                rows: rows.clone(),
+                statistics: Vec::with_capacity(rows.len()),
+            }));
+            for _ in rows {
+                for part in &mut parts[first..] {
+                    let pixels = part.columns.len();
+                    part.statistics.push(rest.split_off(pixels * stored, pixels * kept));
+                }
+            }
+        }
+        parts
     }
 
     /// Median relative error of a pixel of the steady image, over pixels whose mean is positive
@@ -210,20 +242,44 @@ pub(crate) struct Statistics<'a> {
     pub(crate) steady_mean: &'a [f64],
 }
 
-/// The statistics of one strip.
+/// The statistics of one tile.
 struct Part<'a> {
+    columns: Range<usize>,
+    rows: Range<usize>,
+    /// Row by row.
+    statistics: Vec<RowPart<'a>>,
+}
+
+/// The statistics of one row of a tile.
+struct RowPart<'a> {
     mean: &'a mut [f64],
     squares: &'a mut [f64],
     steady_mean: &'a mut [f64],
     steady_squares: &'a mut [f64],
 }
 
-impl<'a> Part<'a> {
+impl Part<'_> {
+    /// Adds pass `n`; `keep` makes the kept channels of a cell.
+    fn add<const C: usize, const K: usize>(
+        self,
+        buffer: &[Spectrum<C>],
+        cells: usize,
+        keep: impl Fn(&Spectrum<C>) -> [f64; K] + Copy,
+        n: u64,
+    ) {
+        let rows = buffer.chunks_exact(self.columns.len() * cells);
+        for (row, buffer) in self.statistics.into_iter().zip(rows) {
+            row.add(buffer, cells, keep, n);
+        }
+    }
+}
+
+impl<'a> RowPart<'a> {
     /// Takes the first cells and pixels off.
-    fn split_off(&mut self, cells: usize, steady: usize) -> Part<'a> {
-        let take = "strips cover the film";
+    fn split_off(&mut self, cells: usize, steady: usize) -> RowPart<'a> {
+        let take = "tiles cover the film";
         let squares = if self.squares.is_empty() { 0 } else { cells };
-        Part {
+        RowPart {
             mean: self.mean.split_off_mut(..cells).expect(take),
             squares: self.squares.split_off_mut(..squares).expect(take),
             steady_mean: self.steady_mean.split_off_mut(..steady).expect(take),

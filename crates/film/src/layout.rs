@@ -6,6 +6,7 @@
 //! kept in two cells of its own, so each pixel has `bins + 2` cells: before, the bins, after.
 
 use serde::{Deserialize, Serialize};
+use tpb_lanes::{F64s, Simd};
 
 use crate::FilmError;
 
@@ -133,6 +134,12 @@ impl Clock {
         self.axis.bins + 2
     }
 
+    /// Where the window starts \[m\].
+    #[inline]
+    pub(crate) fn start(&self) -> f64 {
+        self.axis.start_opl
+    }
+
     /// OPL of one bin \[m\].
     #[inline]
     pub(crate) fn bin_width(&self) -> f64 {
@@ -154,6 +161,24 @@ impl Clock {
         1 + guess + above - below
     }
 
+    /// [`Clock::cell`] of several arrivals, as whole numbers; of a NaN any cell.
+    #[inline(always)]
+    pub(crate) fn cells_of<S: Simd>(&self, simd: S, opl: F64s<S>) -> F64s<S> {
+        let TimeAxis { start_opl, bin_width_opl, bins } = self.axis;
+        let splat = [0.0, 1.0, bins as f64, bins as f64 + 1.0];
+        let zero = F64s::splat(simd, splat[0]);
+        let one = F64s::splat(simd, splat[1]);
+        let last = F64s::splat(simd, splat[2]);
+        // The nearest edge is the bin's lower or its upper.
+        let guess = ((opl - start_opl) * self.inverse_width).round().max(zero).min(last);
+        let edge = guess * bin_width_opl + start_opl;
+        let next = (guess + 1.0) * bin_width_opl + start_opl;
+        let inside = guess + 1.0 - opl.less(edge).of(one) + next.at_most(opl).of(one);
+        let inside = F64s::splat(simd, start_opl).at_most(opl).of(inside);
+        let after = F64s::splat(simd, self.end).at_most(opl);
+        after.choose(F64s::splat(simd, splat[3]), inside)
+    }
+
     /// Where cell `cell` starts \[m\]: −∞ for the cell before the window.
     #[inline]
     pub(crate) fn lower(&self, cell: usize) -> f64 {
@@ -171,7 +196,25 @@ impl Clock {
 mod tests {
     use proptest::prelude::*;
 
+    use tpb_lanes::{LANES, Vectors, WithSimd, dispatch};
+
     use super::*;
+
+    /// [`Clock::cells_of`] of one arrival.
+    fn at_once(clock: Clock, opl: f64) -> usize {
+        struct Work(Clock, f64);
+        impl WithSimd for Work {
+            type Output = [f64; LANES];
+
+            fn with_simd<S: Simd>(self, simd: S) -> [f64; LANES] {
+                let mut cells = [0.0; LANES];
+                let opl = [self.1; LANES].vector(simd, 0);
+                self.0.cells_of(simd, opl).store(&mut cells, 0);
+                cells
+            }
+        }
+        dispatch(Work(clock, opl))[0] as usize
+    }
 
     proptest! {
         #[test]
@@ -190,6 +233,12 @@ mod tests {
             let inside = start + pick * (axis.end() - start);
             let cell = clock.cell(inside);
             prop_assert!(clock.lower(cell) <= inside && inside < clock.upper(cell));
+            for opl in [edge, edge.next_down(), axis.end(), axis.end().next_down(), inside] {
+                prop_assert_eq!(at_once(clock, opl), clock.cell(opl));
+            }
+            for opl in [f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
+                prop_assert_eq!(at_once(clock, opl), clock.cell(opl));
+            }
         }
     }
 

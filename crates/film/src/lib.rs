@@ -1,6 +1,6 @@
 //! Floor 1: the transient film. It alone knows bins, windows and unwarp.
 //!
-//! Integrators hand a [`Strip`] an [`Arrival`] (an instant or a [`TemporalProfile`], times as
+//! Integrators hand a [`Tile`] an [`Arrival`] (an instant or a [`TemporalProfile`], times as
 //! optical path length in metres) with its time-integrated radiance \[W m^-2 sr^-1\];
 //! [`TransientFilm`] averages passes. The invariant everywhere, to rounding:
 //! sum over bins + before + after = steady image.
@@ -18,11 +18,12 @@ mod picture;
 mod profile;
 mod pulse;
 mod quadrature;
+mod several;
 mod stats;
 mod steady_exr;
-mod strip;
 #[cfg(test)]
 mod testing;
+mod tile;
 
 pub use arrays::{Arrays, Quantity};
 pub use arrival::{Arrival, TemporalProfile};
@@ -37,4 +38,5 @@ pub use picture::{
 };
 pub use pulse::{Pulse, PulseReport};
 pub use quadrature::integrate;
-pub use strip::Strip;
+pub use several::{Exponentials, Instants};
+pub use tile::{Grain, Tile};

@@ -82,11 +82,11 @@ impl<const C: usize> Method<C> for LightTracer<'_, C> {
         let connections = chunks.iter().map(|chunk| chunk.tested).sum();
         let chunks = chunks.into_iter().map(|chunk| chunk.contributions).collect();
         let sorted = Sorted::new(chunks, pixels);
-        film.add_pass(|strip| {
-            for pixel in strip.pixels() {
+        film.add_pass(|tile| {
+            for pixel in tile.pixels() {
                 for &(opl, energy) in sorted.of(pixel) {
                     // Unwarped already.
-                    strip.deposit(pixel, 0.0, &Arrival::Instant(opl), energy);
+                    tile.deposit(pixel, 0.0, &Arrival::Instant(opl), energy);
                 }
             }
         });

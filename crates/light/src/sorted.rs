@@ -1,7 +1,7 @@
-//! What photons add to pixels, sorted by pixel for the film's strips.
+//! What photons add to pixels, sorted by pixel for the film's tiles.
 //!
 //! A counting sort: stable, so that each pixel's contributions stay in the photons' order, whatever
-//! the strips and threads.
+//! the tiles and threads.
 
 use std::ops::Range;
 

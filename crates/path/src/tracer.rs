@@ -2,7 +2,7 @@
 
 use std::num::NonZeroU32;
 
-use tpb_film::{Ledger, Strip, TransientFilm};
+use tpb_film::{Ledger, Tile, TransientFilm};
 use tpb_optics::Stream;
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Media, Plan, Scene, Transport};
@@ -40,11 +40,11 @@ impl<'a, const C: usize> PathTracer<'a, C> {
         Self { world: World { scene, integrator, strategies, share }, samples }
     }
 
-    /// All paths of a strip's pixels; returns their ledger.
-    fn render(&self, id: PassId, width: usize, strip: &mut Strip<'_, C>) -> Ledger {
+    /// All paths of a tile's pixels; returns their ledger.
+    fn render(&self, id: PassId, width: usize, tile: &mut Tile<'_, C>) -> Ledger {
         let mut ledger = Ledger::default();
         let (columns, rows) = grid(self.samples);
-        for pixel in strip.pixels() {
+        for pixel in tile.pixels() {
             let mut rng = Stream::new(id.seed, id.index, pixel as u64);
             let corner = ((pixel % width) as f64, (pixel / width) as f64);
             for sample in 0..self.samples.get() {
@@ -52,8 +52,7 @@ impl<'a, const C: usize> PathTracer<'a, C> {
                 let x = corner.0 + (f64::from(column) + rng.uniform()) / f64::from(columns);
                 let y = corner.1 + (f64::from(row) + rng.uniform()) / f64::from(rows);
                 let direction = self.world.scene.sensor.direction(x, y);
-                Walk::new(&self.world, direction, &mut rng, &mut ledger, (&mut *strip, pixel))
-                    .run();
+                Walk::new(&self.world, direction, &mut rng, &mut ledger, (&mut *tile, pixel)).run();
             }
         }
         ledger
@@ -76,7 +75,7 @@ impl<const C: usize> Method<C> for PathTracer<'_, C> {
     fn pass(&self, id: PassId, film: &mut TransientFilm<C>) -> PassReport {
         let layout = *film.layout();
         let mut report = PassReport::default();
-        for ledger in film.add_pass(|strip| self.render(id, layout.width, strip)) {
+        for ledger in film.add_pass(|tile| self.render(id, layout.width, tile)) {
             report.ledger.add(&ledger);
         }
         let camera_paths = layout.pixels() as u64 * u64::from(self.samples.get());

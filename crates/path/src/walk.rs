@@ -1,7 +1,7 @@
 //! One camera path, from the eye on; read [`Walk::run`] first.
 
 use glam::DVec3;
-use tpb_film::{Arrival, Ledger, Strip};
+use tpb_film::{Arrival, Ledger, Tile};
 use tpb_optics::{Spectrum, Stream};
 use tpb_scene::{Flight, Vertex};
 use tpb_transport::{FreeFlight, Outcome, Part, Towards, roulette};
@@ -15,21 +15,21 @@ pub(crate) struct Walk<'a, 'f, const C: usize> {
     pub(crate) rng: &'a mut Stream,
     pub(crate) ledger: &'a mut Ledger,
     pub(crate) path: Path<C>,
-    strip: &'a mut Strip<'f, C>,
+    tile: &'a mut Tile<'f, C>,
     pixel: usize,
     /// OPL from the eye to the first surface that is not null.
     unwarp_opl: f64,
 }
 
 impl<'a, 'f, const C: usize> Walk<'a, 'f, C> {
-    /// A path that leaves the eye in this direction, for a pixel of this strip.
+    /// A path that leaves the eye in this direction, for a pixel of this tile.
     #[inline]
     pub(crate) fn new(
         world: &'a World<'a>,
         direction: DVec3,
         rng: &'a mut Stream,
         ledger: &'a mut Ledger,
-        (strip, pixel): (&'a mut Strip<'f, C>, usize),
+        (tile, pixel): (&'a mut Tile<'f, C>, usize),
     ) -> Self {
         let path = Path {
             vertex: world.scene.eye(),
@@ -40,7 +40,7 @@ impl<'a, 'f, const C: usize> Walk<'a, 'f, C> {
             depth: 1,
             found: Found::FromEye,
         };
-        Self { world, rng, ledger, path, strip, pixel, unwarp_opl: 0.0 }
+        Self { world, rng, ledger, path, tile, pixel, unwarp_opl: 0.0 }
     }
 
     /// Follows the path to its end.
@@ -112,6 +112,6 @@ impl<'a, 'f, const C: usize> Walk<'a, 'f, C> {
     #[inline]
     pub(crate) fn deposit(&mut self, opl: f64, energy: Spectrum<C>) {
         let share = energy * self.world.share;
-        self.strip.deposit(self.pixel, self.unwarp_opl, &Arrival::Instant(opl), share);
+        self.tile.deposit(self.pixel, self.unwarp_opl, &Arrival::Instant(opl), share);
     }
 }

@@ -220,9 +220,9 @@ mod tests {
             FilmSetup::new(&spec(PixelFormat::Luminance), Transport::Mono, &options).unwrap();
         assert!(setup.guard_bins().0 >= 2, "{:?}", setup.guard_bins());
         let mut film = setup.film::<1>().unwrap();
-        film.add_pass(|strip| {
-            for pixel in strip.pixels() {
-                strip.deposit(pixel, 0.0, &Arrival::Instant(0.75), Spectrum([8.0]));
+        film.add_pass(|tile| {
+            for pixel in tile.pixels() {
+                tile.deposit(pixel, 0.0, &Arrival::Instant(0.75), Spectrum([8.0]));
             }
         });
         let (arrays, report) = setup.develop(film).unwrap();

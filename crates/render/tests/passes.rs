@@ -26,15 +26,15 @@ impl Method<1> for Noise {
 
     fn pass(&self, id: PassId, film: &mut TransientFilm<1>) -> PassReport {
         std::thread::sleep(self.nap);
-        let strips = film.add_pass(|strip| {
-            for pixel in strip.pixels() {
+        let tiles = film.add_pass(|tile| {
+            for pixel in tile.pixels() {
                 let mut rng = Stream::new(id.seed, id.index, pixel as u64);
                 let arrival = Arrival::Instant(12.0 * rng.uniform());
-                strip.deposit(pixel, 0.0, &arrival, Spectrum([rng.uniform()]));
+                tile.deposit(pixel, 0.0, &arrival, Spectrum([rng.uniform()]));
             }
-            strip.pixels().len() as u64
+            tile.pixels().count() as u64
         });
-        let counts = Counts { camera_paths: strips.iter().sum(), ..Counts::default() };
+        let counts = Counts { camera_paths: tiles.iter().sum(), ..Counts::default() };
         let ledger = Ledger { emitted: 2.0, escaped: 2.0, ..Ledger::default() };
         PassReport { counts, ledger }
     }

@@ -28,7 +28,8 @@ pub use geometry::Primitive;
 pub use medium::{Medium, MediumBoundary, MediumId, Region};
 pub use plan::{Item, Kernel, Media, Plan, Transport};
 pub use sensor::{
-    FilmPoint, FilmSpec, FovAxis, IntegratorSpec, MethodName, PixelFormat, Sensor, TimeSpec,
+    FilmPoint, FilmSpec, FovAxis, ImagePlane, IntegratorSpec, MethodName, PixelFormat, Sensor,
+    TimeSpec,
 };
 pub use texture::{Texture, TextureId};
 pub use world::{Scene, Shape};

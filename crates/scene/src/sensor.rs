@@ -23,6 +23,17 @@ pub enum FovAxis {
     Larger,
 }
 
+/// The film on the plane at distance 1 along the axis, as directions from the pinhole.
+#[derive(Clone, Copy, Debug)]
+pub struct ImagePlane {
+    /// Towards the top left corner of the film.
+    pub corner: DVec3,
+    /// From a pixel to its right neighbour.
+    pub column: DVec3,
+    /// From a pixel to the one below it.
+    pub row: DVec3,
+}
+
 /// A pinhole camera.
 #[derive(Clone, Debug)]
 pub struct Sensor {
@@ -79,6 +90,44 @@ impl Sensor {
         let a = self.half_width * (1.0 - 2.0 * x / w);
         let b = self.half_height * (1.0 - 2.0 * y / h);
         (self.forward + a * self.left + b * self.up).normalize()
+    }
+
+    /// The direction through the film position (`x`, `y`), not normalised: `corner + x column +
+    /// y row`, of component 1 along the axis. Columns and rows are perpendicular.
+    #[inline]
+    pub fn plane(&self) -> ImagePlane {
+        let (w, h) = (self.film.0 as f64, self.film.1 as f64);
+        ImagePlane {
+            corner: self.forward + self.half_width * self.left + self.half_height * self.up,
+            column: -2.0 * self.half_width / w * self.left,
+            row: -2.0 * self.half_height / h * self.up,
+        }
+    }
+
+    /// Where a ball at `from_eye` from the pinhole is seen, were nothing in between: its first and
+    /// last column and its first and last row, beyond the film too; `None` unless it lies in front
+    /// of the pinhole by more than its radius.
+    #[inline]
+    pub fn extent(&self, from_eye: DVec3, radius: f64) -> Option<[(f64, f64); 2]> {
+        let along = from_eye.dot(self.forward);
+        let scale = (along - radius) * (along + radius);
+        if along <= radius || scale <= 0.0 {
+            return None;
+        }
+        let tangents = |across: f64, half: f64, pixels: f64| {
+            // Slopes of the tangents in the plane of axis and film's edge.
+            let spread = radius * (across * across + scale).sqrt();
+            let at = |slope: f64| 0.5 * pixels * (1.0 - slope / (scale * half));
+            (at(across * along + spread), at(across * along - spread))
+        };
+        let (w, h) = (self.film.0 as f64, self.film.1 as f64);
+        let columns = tangents(from_eye.dot(self.left), self.half_width, w);
+        Some([columns, tangents(from_eye.dot(self.up), self.half_height, h)])
+    }
+
+    /// Tangents of half the field of view, along columns and rows of the film.
+    pub fn half_extents(&self) -> [(DVec3, f64); 2] {
+        [(self.left, self.half_width), (self.up, self.half_height)]
     }
 
     /// Where light that travels against `direction` (away from the pinhole) meets the film; `None`

@@ -168,6 +168,5 @@ fn beam_options(args: &BeamArgs, photons: &PhotonArgs) -> BeamOptions {
         gather_samples: args.gather_samples,
         surface_samples: args.surface_samples,
         light_samples: args.light_samples,
-        ..BeamOptions::default()
     }
 }

@@ -317,7 +317,7 @@ impl Pair {
 /// The film's bins of a contribution, and its energy in f64.
 fn deposited(contribution: &Contribution<1>, axis: TimeAxis) -> Result<(Vec<f64>, f64)> {
     let mut film = TransientFilm::<1>::new(Layout::new(1, 1, Some(axis))?, FilmOptions::default())?;
-    film.add_pass(|strip| contribution.deposit(Temporal::Exact, 1.0, (strip, 0, 0.0)));
+    film.add_pass(|tile| contribution.deposit(Temporal::Exact, 1.0, (tile, 0, 0.0)));
     let arrays = film.develop();
     Ok((arrays.transient.iter().map(|&v| f64::from(v)).collect(), arrays.steady[0]))
 }

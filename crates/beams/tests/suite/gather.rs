@@ -1,15 +1,21 @@
-//! The hierarchy and the tiles against brute force over all beams: the same set of pairs, each once.
+//! Both gathers of beams, by bundles of rays and drawn over the image, against brute force over all beams: the same set of pairs,
+//! each once.
 
 use glam::DVec3;
+use tpb_beams::Temporal;
 use tpb_beams::beam::{Attenuation, Beam, CameraRay};
 use tpb_beams::beam_map::BeamMap;
 use tpb_beams::kernel::RayBeamKernel;
 use tpb_beams::kernel1d::Kernel1d;
 use tpb_beams::kernel2d::Kernel2d;
 use tpb_beams::kernel3d::Kernel3d;
-use tpb_beams::tiles::Tiles;
+use tpb_beams::scan::Lattice;
+use tpb_beams::sight::Sights;
+use tpb_beams::splat::{Splat, TileRays};
+use tpb_film::Grain;
 use tpb_optics::{Coefficients, Phase, Spectrum, Stream, warp};
-use tpb_scene::{MediumId, Scene};
+use tpb_render::{FilmSetup, RenderOptions};
+use tpb_scene::{Flight, MediumId, Region, Scene, Span, Transport};
 
 use crate::scenes;
 
@@ -74,96 +80,157 @@ fn joins<K: RayBeamKernel>(kernel: K, beam: &Beam<1>, ray: &CameraRay<1>) -> boo
     kernel.meet(of_beam.0, of_beam.1, of_beam.2, of_ray.0, of_ray.1, of_ray.2).is_some()
 }
 
-fn check<K: RayBeamKernel>(kernel: K, radius: f64, scale: f64, pieces: f64, seed: u64) -> usize {
+fn check<K: RayBeamKernel>(kernel: K, scale: f64, seed: u64) -> usize {
     let mut rng = Stream::new(seed, 0, 0);
     let beams = beams(scale, 600, &mut rng);
     let rays = rays(scale, 400, &mut rng);
-    let map = BeamMap::new(kernel, &beams, pieces * radius);
+    let map = BeamMap::new(kernel, &beams);
     let mut pairs = 0;
-    for ray in &rays {
-        let mut found = Vec::new();
-        map.query(kernel, MediumId(1), ray, |beam, _| found.push(beam.opl as usize));
-        found.sort_unstable();
-        let all = beams.iter().enumerate();
-        let brute: Vec<usize> = all
-            .filter(|(_, b)| b.medium == MediumId(1) && joins(kernel, b, ray))
-            .map(|(index, _)| index)
-            .collect();
-        assert_eq!(found, brute, "scale {scale}, pieces {pieces}");
-        pairs += found.len();
+    let rays: Vec<_> = rays.into_iter().map(|ray| (MediumId(1), ray)).collect();
+    // Numbers of rays that do and do not fill bundles.
+    let mut rest = &rays[..];
+    while !rest.is_empty() {
+        let query;
+        (query, rest) = rest.split_at(rest.len().min(1 + rng.index(180)));
+        let mut found = vec![vec![]; query.len()];
+        let count = map.query(kernel, query, |lane, beam, _| found[lane].push(beam.opl as usize));
+        assert_eq!(count.accepted as usize, found.iter().map(Vec::len).sum::<usize>());
+        for (found, (_, ray)) in found.iter_mut().zip(query) {
+            found.sort_unstable();
+            let all = beams.iter().enumerate();
+            let brute: Vec<usize> = all
+                .filter(|(_, b)| b.medium == MediumId(1) && joins(kernel, b, ray))
+                .map(|(index, _)| index)
+                .collect();
+            assert_eq!(*found, brute, "scale {scale}");
+            pairs += found.len();
+        }
     }
     pairs
 }
 
 #[test]
-fn the_hierarchy_finds_exactly_the_pairs_of_brute_force() {
+fn bundles_find_exactly_the_pairs_of_brute_force() {
     for (seed, scale) in [1e-3, 1.0, 1e3].into_iter().enumerate() {
-        for pieces in [1.0, 16.0, f64::INFINITY] {
-            for relative in [0.002, 0.05] {
-                let radius = relative * scale;
-                let one = check(Kernel1d { radius }, radius, scale, pieces, seed as u64);
-                let two = check(Kernel2d { radius }, radius, scale, pieces, seed as u64);
-                let three = check(Kernel3d { radius }, radius, scale, pieces, seed as u64);
-                assert!(one > 50 && two >= one, "pairs to compare: {one}, {two}");
-                assert!(three >= two && (three > two || relative < 0.01), "{two}, {three}");
-            }
+        for relative in [0.002, 0.05] {
+            let radius = relative * scale;
+            let one = check(Kernel1d { radius }, scale, seed as u64);
+            let two = check(Kernel2d { radius }, scale, seed as u64);
+            let three = check(Kernel3d { radius }, scale, seed as u64);
+            assert!(one > 50 && two >= one, "pairs to compare: {one}, {two}");
+            assert!(three >= two && (three > two || relative < 0.01), "{two}, {three}");
         }
     }
 }
 
-/// Rays from an eye amid the beams, over the whole image, and segments of them.
-fn check_tiles<K: RayBeamKernel>(kernel: K, radius: f64, scale: f64, fov: f64, seed: u64) -> usize {
+/// Flights from an eye amid the beams, over the whole image: through one medium from the eye, from
+/// farther on, through two media, through none.
+fn flights(scene: &Scene, lattice: &Lattice, scale: f64, rng: &mut Stream) -> Vec<Flight> {
+    let region = |medium: Option<u32>| Region { medium: medium.map(MediumId), eta: 1.0 };
+    let span = |start, end, medium| Span { start, end, region: region(medium) };
+    let flight = |(index, direction): (usize, DVec3)| {
+        let (a, b) = (0.3 * scale * rng.uniform(), 0.3 * scale + scale * rng.uniform());
+        let spans = match index % 5 {
+            0 => vec![span(0.0, f64::INFINITY, Some(1))],
+            1 => vec![span(0.0, a, None), span(a, b, Some(1))],
+            2 => vec![span(0.0, a, Some(1)), span(a, b, Some(0))],
+            3 => vec![
+                span(0.0, a, Some(1)),
+                span(a, 0.3 * scale, None),
+                span(0.3 * scale, b, Some(1)),
+            ],
+            _ => vec![span(0.0, b, Some(0))],
+        };
+        let origin = scene.sensor.position;
+        Flight { origin, direction, spans: spans.into(), hit: None }
+    };
+    lattice.directions().enumerate().map(flight).collect()
+}
+
+/// Every beam has a bin of its own, so that pixel and bin tell the pair.
+fn check_splat<K: RayBeamKernel>(
+    kernel: K,
+    relative: f64,
+    scale: f64,
+    fov: f64,
+    seed: u64,
+) -> usize {
     let mut rng = Stream::new(seed, 1, 0);
-    let beams = beams(scale, 1500, &mut rng);
+    let mut beams = beams(scale, 400, &mut rng);
+    let bin = 1e4 * scale;
+    for (index, beam) in beams.iter_mut().enumerate() {
+        beam.opl = (index as f64 + 0.25) * bin;
+    }
     let (width, height) = (37, 22);
     let eye = position(0.5 * scale, &mut rng);
     let sensor = scenes::camera(eye, direction(&mut rng), fov, (width, height));
     let light = scenes::point(DVec3::ZERO, tpb_optics::Rgb::ONE);
-    let film = scenes::film(width, height, 1.0, 1);
-    let parts = scenes::infinite(scenes::fog(1.0, 1.0, 0.0), light, sensor, film);
+    let film = scenes::film(width, height, bin, beams.len());
+    let thin = scenes::fog(1.0, 1e-4 / scale, 0.0);
+    let mut parts = scenes::infinite(thin, light, sensor, film);
+    parts.media.push(scenes::fog(0.5, 2e-4 / scale, 0.6));
     let scene = Scene::assemble(parts).expect("the scene is consistent");
-    let tiles = Tiles::new(&scene, &beams, radius);
-    let mut pairs = 0;
-    for index in 0..width * height {
-        let (x, y) = (index % width, index / width);
-        let (a, b) = (x as f64 + rng.uniform(), y as f64 + rng.uniform());
-        let omega = scene.sensor.direction(a, b);
-        let start = if index % 2 == 0 { 0.0 } else { 0.3 * scale * rng.uniform() };
-        let ray = CameraRay {
-            origin: eye + start * omega,
-            direction: omega,
-            length: if index % 3 == 0 { f64::INFINITY } else { scale * rng.uniform() },
-            opl: 0.0,
-            throughput: Spectrum([1.0]),
-            coefficients: Coefficients { sigma_s: Spectrum([1.0]), sigma_t: Spectrum([1.0]) },
-            phase: Phase::Isotropic,
-            eta: 1.0,
+    let layout = FilmSetup::new(&scene.film, Transport::Mono, &RenderOptions::default()).unwrap();
+    let mut film = layout.film::<1>().unwrap();
+    let edge = film.tile_edge(Grain::Coarse);
+    assert!(edge > 4 && edge < 22, "several tiles of several pixels: {edge}");
+    let sights = Sights::new(&scene.sensor, &beams, kernel.radius(), (height, edge));
+    let (offset, draw) = ([rng.uniform(), rng.uniform()], Stream::new(seed, 2, 0));
+    let tiles = film.add_pass_by(Grain::Coarse, |tile| {
+        let lattice = Lattice::new(&scene.sensor, tile, offset);
+        let flights = flights(&scene, &lattice, scale, &mut draw.clone());
+        let rays = TileRays::new(&scene, lattice, &flights);
+        let band = tile.rows().start / edge;
+        let splat = Splat {
+            kernel,
+            beams: &beams,
+            sights: &sights,
+            band,
+            rays: &rays,
+            temporal: Temporal::Exact,
+            share: 1.0,
         };
-        let mut found = Vec::new();
-        tiles.query(kernel, MediumId(1), (x, y), &ray, |beam, _| found.push(beam.opl as usize));
-        let all = beams.iter().enumerate();
-        let brute: Vec<usize> = all
-            .filter(|(_, b)| b.medium == MediumId(1) && joins(kernel, b, &ray))
-            .map(|(index, _)| index)
-            .collect();
-        assert_eq!(found, brute, "scale {scale}, field of view {fov}");
-        pairs += found.len();
+        let pairs = splat.draw(|_| true, tile);
+        (tile.pixels().collect::<Vec<_>>(), flights, pairs)
+    });
+    let arrays = film.develop();
+    let (mut joined, mut tested) = (0, 0);
+    for (pixels, flights, pairs) in tiles {
+        let before = joined;
+        for (pixel, flight) in pixels.into_iter().zip(flights) {
+            let spans = flight.spans.iter();
+            let rays: Vec<_> =
+                spans.filter_map(|span| CameraRay::<1>::of_span(&scene, &flight, span)).collect();
+            for (beam, &found) in beams.iter().zip(arrays.pixel(pixel)) {
+                let rays = rays.iter().filter(|(medium, _)| *medium == beam.medium);
+                let met: Vec<_> = rays.filter_map(|(_, ray)| kernel.evaluate(beam, ray)).collect();
+                let expected: f64 = met.iter().map(|met| met.energy[0]).sum();
+                let error = (f64::from(found) - expected).abs();
+                assert!(error <= 1e-6 * expected, "{found} {expected}, scale {scale}, fov {fov}");
+                joined += met.len();
+            }
+        }
+        assert_eq!(pairs.accepted as usize, joined - before);
+        tested += pairs.tested;
     }
-    pairs
+    assert!(relative > 0.01 || tested as usize <= 8 * joined + 1000, "{tested} for {joined}");
+    joined
 }
 
 #[test]
-fn the_tiles_find_exactly_the_pairs_of_brute_force() {
+fn drawn_beams_meet_exactly_the_rays_of_brute_force() {
+    let mut joined = [0; 3];
     for (seed, scale) in [1e-3, 1.0, 1e3].into_iter().enumerate() {
         for fov in [0.01, 40.0, 170.0] {
             for relative in [0.002, 0.05, 2.0] {
-                let radius = relative * scale;
-                let one = check_tiles(Kernel1d { radius }, radius, scale, fov, seed as u64);
-                let two = check_tiles(Kernel2d { radius }, radius, scale, fov, seed as u64);
-                let three = check_tiles(Kernel3d { radius }, radius, scale, fov, seed as u64);
-                assert!(two >= one && (one > 0 || fov < 1.0), "pairs to compare: {one}, {two}");
-                assert!(three >= two && (three > two || fov < 1.0), "{two}, {three}");
+                let (radius, seed) = (relative * scale, seed as u64);
+                let one = check_splat(Kernel1d { radius }, relative, scale, fov, seed);
+                let two = check_splat(Kernel2d { radius }, relative, scale, fov, seed);
+                let three = check_splat(Kernel3d { radius }, relative, scale, fov, seed);
+                assert!(one > 0 || fov < 1.0, "pairs to compare");
+                joined.iter_mut().zip([one, two, three]).for_each(|(sum, count)| *sum += count);
             }
         }
     }
+    assert!(joined[0] > 10_000 && joined.is_sorted_by(|a, b| a < b), "{joined:?}");
 }

@@ -24,7 +24,7 @@ fn axis(contribution: &Contribution<3>) -> TimeAxis {
 fn deposited(contribution: &Contribution<3>, temporal: Temporal) -> Vec<[f64; 3]> {
     let layout = Layout::new(1, 1, Some(axis(contribution))).expect("the axis is sound");
     let mut film = TransientFilm::<3>::new(layout, FilmOptions::default()).expect("it is small");
-    film.add_pass(|strip| contribution.deposit(temporal, 1.0, (strip, 0, 0.0)));
+    film.add_pass(|tile| contribution.deposit(temporal, 1.0, (tile, 0, 0.0)));
     assert_eq!(film.non_finite(), 0);
     let arrays = film.develop();
     for c in 0..3 {

@@ -4,19 +4,20 @@ mod files;
 mod passes;
 mod pictures;
 mod pulses;
+mod several;
 
 use tpb_film::{
-    Arrays, Arrival, FilmOptions, Layout, Strip, TemporalProfile, TimeAxis, TransientFilm,
+    Arrays, Arrival, FilmOptions, Layout, TemporalProfile, Tile, TimeAxis, TransientFilm,
 };
 use tpb_optics::{Spectrum, Stream};
 
 /// An axis of 30 bins of 0.2 m from 1 m.
 const AXIS: Option<TimeAxis> = Some(TimeAxis { start_opl: 1.0, bin_width_opl: 0.2, bins: 30 });
 
-/// Random deposits of all kinds, partly outside the window; returns the energy of the strip.
-fn render<const C: usize>(strip: &mut Strip<'_, C>, pass: u64) -> Spectrum<C> {
+/// Random deposits of all kinds, partly outside the window; returns the energy of the tile.
+fn render<const C: usize>(tile: &mut Tile<'_, C>, pass: u64) -> Spectrum<C> {
     let mut sum = Spectrum::ZERO;
-    for pixel in strip.pixels() {
+    for pixel in tile.pixels() {
         let mut rng = Stream::new(11, pass, pixel as u64);
         for _ in 0..=rng.index(8) {
             let start = 8.0 * rng.uniform();
@@ -39,7 +40,7 @@ fn render<const C: usize>(strip: &mut Strip<'_, C>, pass: u64) -> Spectrum<C> {
                 }),
             };
             let energy = Spectrum(std::array::from_fn(|_| rng.uniform()));
-            strip.deposit(pixel, 0.5 * rng.uniform(), &arrival, energy);
+            tile.deposit(pixel, 0.5 * rng.uniform(), &arrival, energy);
             sum += energy;
         }
     }
@@ -50,7 +51,7 @@ fn render<const C: usize>(strip: &mut Strip<'_, C>, pass: u64) -> Spectrum<C> {
 fn rendered<const C: usize>(layout: Layout, options: FilmOptions, passes: u64) -> TransientFilm<C> {
     let mut film = TransientFilm::new(layout, options).unwrap();
     for pass in 0..passes {
-        film.add_pass(|strip| render(strip, pass));
+        film.add_pass(|tile| render(tile, pass));
     }
     film
 }

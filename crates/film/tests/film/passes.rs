@@ -34,13 +34,12 @@ fn the_steady_image_is_the_energy_deposited_with_bins_or_without() {
     assert!(without.opl_edges.is_empty());
 
     let mut film = TransientFilm::<1>::new(Layout::new(40, 50, AXIS).unwrap(), options).unwrap();
-    let sums = film.add_pass(|strip| (strip.pixels(), render(strip, 0)[0]));
-    let mut next = 0;
-    for (pixels, _) in &sums {
-        assert_eq!(pixels.start, next, "strips come in order");
-        next = pixels.end;
-    }
-    assert_eq!(next, 2000, "strips cover the image");
+    let sums = film.add_pass(|tile| (tile.pixels().collect::<Vec<_>>(), render(tile, 0)[0]));
+    let firsts: Vec<_> = sums.iter().map(|(pixels, _)| pixels[0]).collect();
+    assert!(firsts.is_sorted(), "tiles come in order: {firsts:?}");
+    let mut all: Vec<_> = sums.iter().flat_map(|(pixels, _)| pixels.clone()).collect();
+    all.sort_unstable();
+    assert_eq!(all, (0..2000).collect::<Vec<_>>(), "tiles cover the image");
     let deposited: f64 = sums.iter().map(|s| s.1).sum();
     let steady: f64 = film.develop().steady.iter().sum();
     assert!((steady / deposited - 1.0).abs() < 1e-13);
@@ -74,7 +73,7 @@ fn mean_variance_and_relative_error_agree_with_two_sweeps() {
     let passes: Vec<_> = (0..n)
         .map(|pass| {
             let mut film = TransientFilm::<3>::new(layout, options).unwrap();
-            film.add_pass(|strip| render(strip, pass));
+            film.add_pass(|tile| render(tile, pass));
             assert!(film.relative_error().is_none() && film.develop().variance.is_none());
             film.develop()
         })
@@ -112,15 +111,15 @@ fn the_relative_error_is_that_of_a_typical_lit_pixel() {
     let layout = Layout::new(10, 10, None).unwrap();
     let mut film = TransientFilm::<1>::new(layout, FilmOptions::default()).unwrap();
     for pass in 0..2 {
-        film.add_pass(|strip| {
-            for pixel in strip.pixels() {
+        film.add_pass(|tile| {
+            for pixel in tile.pixels() {
                 let energy = match pixel {
                     0..5 => 1e6,
                     5..40 => 0.0,
                     // 1 ± 0.1, a standard error of 10 %.
                     _ => [0.9, 1.1][pass],
                 };
-                strip.deposit(pixel, 0.0, &Arrival::Instant(2.0), Spectrum([energy]));
+                tile.deposit(pixel, 0.0, &Arrival::Instant(2.0), Spectrum([energy]));
             }
         });
     }
@@ -149,10 +148,10 @@ fn luminance_combines_channels_before_the_statistics() {
     // One random number drives all channels: the deviations add before they are squared.
     let mut film = TransientFilm::<3>::new(layout, luminance).unwrap();
     for pass in 0..4 {
-        film.add_pass(|strip| {
-            for pixel in strip.pixels() {
+        film.add_pass(|tile| {
+            for pixel in tile.pixels() {
                 let energy = Spectrum::splat(Stream::new(3, pass, pixel as u64).uniform());
-                strip.deposit(pixel, 0.0, &Arrival::Instant(2.0), energy);
+                tile.deposit(pixel, 0.0, &Arrival::Instant(2.0), energy);
             }
         });
     }
@@ -183,15 +182,15 @@ fn a_single_channel_is_repeated_only_when_arrays_are_made() {
 fn what_is_not_finite_is_counted_and_kept_out() {
     let layout = Layout::new(4, 4, AXIS).unwrap();
     let mut film = TransientFilm::<3>::new(layout, FilmOptions::default()).unwrap();
-    film.add_pass(|strip| {
-        for pixel in strip.pixels() {
+    film.add_pass(|tile| {
+        for pixel in tile.pixels() {
             let broken = Spectrum([1.0, f64::NAN, 1.0]);
-            strip.deposit(pixel, 0.0, &Arrival::Instant(2.0), broken);
-            strip.deposit(pixel, 0.0, &Arrival::Instant(2.0), Spectrum::splat(f64::INFINITY));
-            strip.deposit(pixel, 0.0, &Arrival::Instant(f64::NAN), Spectrum::ONE);
-            strip.deposit(pixel, 0.0, &Arrival::Instant(f64::INFINITY), Spectrum::ONE);
-            strip.deposit(pixel, 0.0, &Arrival::Instant(2.0), Spectrum::ONE);
-            assert!(strip.non_finite() >= 4);
+            tile.deposit(pixel, 0.0, &Arrival::Instant(2.0), broken);
+            tile.deposit(pixel, 0.0, &Arrival::Instant(2.0), Spectrum::splat(f64::INFINITY));
+            tile.deposit(pixel, 0.0, &Arrival::Instant(f64::NAN), Spectrum::ONE);
+            tile.deposit(pixel, 0.0, &Arrival::Instant(f64::INFINITY), Spectrum::ONE);
+            tile.deposit(pixel, 0.0, &Arrival::Instant(2.0), Spectrum::ONE);
+            assert!(tile.non_finite() >= 4);
         }
     });
     assert_eq!(film.non_finite(), 4 * 16);
@@ -203,7 +202,7 @@ fn an_unwarping_film_subtracts_the_way_from_the_eye() {
     let bin = |unwarp| {
         let options = FilmOptions { unwarp, ..FilmOptions::default() };
         let mut film = TransientFilm::<1>::new(Layout::new(1, 1, AXIS).unwrap(), options).unwrap();
-        film.add_pass(|strip| strip.deposit(0, 1.0, &Arrival::Instant(2.5), Spectrum::ONE));
+        film.add_pass(|tile| tile.deposit(0, 1.0, &Arrival::Instant(2.5), Spectrum::ONE));
         film.develop().transient.iter().position(|&v| v == 1.0)
     };
     assert_eq!((bin(false), bin(true)), (Some(7), Some(2)));
@@ -234,9 +233,9 @@ fn values_beyond_f32_are_told() {
         let mut film =
             TransientFilm::<1>::new(Layout::new(2, 1, AXIS).unwrap(), FilmOptions::default())
                 .unwrap();
-        film.add_pass(|strip| {
-            for pixel in strip.pixels() {
-                strip.deposit(pixel, 0.0, &Arrival::Instant(2.0), Spectrum([energy]));
+        film.add_pass(|tile| {
+            for pixel in tile.pixels() {
+                tile.deposit(pixel, 0.0, &Arrival::Instant(2.0), Spectrum([energy]));
             }
         });
         film.develop().out_of_range(true)

@@ -19,10 +19,10 @@ const HEIGHT: usize = 6;
 fn front() -> Arrays {
     let layout = Layout::new(WIDTH, HEIGHT, AXIS).unwrap();
     let mut film = TransientFilm::<3>::new(layout, FilmOptions::default()).unwrap();
-    film.add_pass(|strip| {
-        for pixel in strip.pixels() {
+    film.add_pass(|tile| {
+        for pixel in tile.pixels() {
             let opl = 1.5 + 0.1 * (pixel % WIDTH) as f64;
-            strip.deposit(pixel, 0.0, &Arrival::Instant(opl), Spectrum([2.0, 1.0, 0.5]));
+            tile.deposit(pixel, 0.0, &Arrival::Instant(opl), Spectrum([2.0, 1.0, 0.5]));
         }
     });
     film.develop()
@@ -67,10 +67,10 @@ fn exposure_and_tone_reach_every_picture() {
     // Rows of 1/64, 1/16, 1/4 and 1; all are lit, so that white is 1.
     let layout = Layout::new(1, 4, AXIS).unwrap();
     let mut film = TransientFilm::<1>::new(layout, FilmOptions::default()).unwrap();
-    film.add_pass(|strip| {
-        for pixel in strip.pixels() {
+    film.add_pass(|tile| {
+        for pixel in tile.pixels() {
             let energy = Spectrum::splat([1.0 / 64.0, 1.0 / 16.0, 0.25, 1.0][pixel]);
-            strip.deposit(pixel, 0.0, &Arrival::Instant(1.5), energy);
+            tile.deposit(pixel, 0.0, &Arrival::Instant(1.5), energy);
         }
     });
     let arrays = film.develop();
@@ -134,10 +134,10 @@ fn the_steady_picture_keeps_colours_and_order() {
     let path = folder.path().join("steady.png");
     let layout = Layout::new(2, 2, None).unwrap();
     let mut film = TransientFilm::<3>::new(layout, FilmOptions::default()).unwrap();
-    film.add_pass(|strip| {
-        for pixel in strip.pixels() {
+    film.add_pass(|tile| {
+        for pixel in tile.pixels() {
             let energy = Spectrum::splat(0.25 * pixel as f64) * Spectrum([1.0, 0.5, 0.25]);
-            strip.deposit(pixel, 0.0, &Arrival::Instant(0.0), energy);
+            tile.deposit(pixel, 0.0, &Arrival::Instant(0.0), energy);
         }
     });
     film.develop().write_steady_png(&path, &PictureOptions::default()).unwrap();
@@ -192,12 +192,12 @@ fn a_lamp_takes_neither_the_exposure_nor_the_colours() {
     let path = folder.path().join("arrival.png");
     let layout = Layout::new(WIDTH, HEIGHT, AXIS).unwrap();
     let mut film = TransientFilm::<1>::new(layout, FilmOptions::default()).unwrap();
-    film.add_pass(|strip| {
-        for pixel in strip.pixels() {
+    film.add_pass(|tile| {
+        for pixel in tile.pixels() {
             let opl = 3.0 + 0.05 * (pixel % WIDTH) as f64;
-            strip.deposit(pixel, 0.0, &Arrival::Instant(opl), Spectrum::ONE);
+            tile.deposit(pixel, 0.0, &Arrival::Instant(opl), Spectrum::ONE);
             if pixel < 4 {
-                strip.deposit(pixel, 0.0, &Arrival::Instant(1.1), Spectrum([1e5]));
+                tile.deposit(pixel, 0.0, &Arrival::Instant(1.1), Spectrum([1e5]));
             }
         }
     });

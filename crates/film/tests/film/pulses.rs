@@ -85,7 +85,7 @@ fn a_pulse_far_shorter_than_a_bin_is_a_delta() {
 fn instant(opl: f64) -> Arrays {
     let layout = Layout::new(1, 1, AXIS).unwrap();
     let mut film = TransientFilm::<1>::new(layout, FilmOptions::default()).unwrap();
-    film.add_pass(|strip| strip.deposit(0, 0.0, &Arrival::Instant(opl), Spectrum::ONE));
+    film.add_pass(|tile| tile.deposit(0, 0.0, &Arrival::Instant(opl), Spectrum::ONE));
     film.develop()
 }
 

@@ -1,0 +1,112 @@
+//! Where the camera's rays may meet a beam: the film's columns and rows that see any of it.
+//!
+//! The kernels join a beam to a point of a ray within R of a point of the beam. Seen from the eye,
+//! the points within R of a segment in front of it lie between the tangents of the balls around its
+//! ends. A beam that comes nearer to the plane of the eye than 2R is cut there: of what is nearer,
+//! only points within R of the rays' first 3R matter, and if there are any, the beam may be met
+//! anywhere.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use tpb_scene::Sensor;
+
+use crate::beam::Beam;
+
+/// Relative allowance for rounding.
+const SLACK: f64 = 1e-9;
+
+/// A beam as the camera sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sight {
+    /// (origin − eye) × direction \[m\].
+    pub(crate) moment: DVec3,
+    /// First and last column that may meet it, as film coordinates; first > last if none.
+    pub(crate) columns: [f32; 2],
+    /// Likewise the rows.
+    pub(crate) rows: [f32; 2],
+}
+
+const EVERYWHERE: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
+const NOWHERE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+
+impl Sight {
+    /// Of a beam for kernels of `radius`.
+    pub(crate) fn new<const C: usize>(sensor: &Sensor, beam: &Beam<C>, radius: f64) -> Self {
+        let first = beam.origin - sensor.position;
+        let moment = first.cross(beam.direction);
+        let last = first + beam.length * beam.direction;
+        let radius = radius * (1.0 + SLACK) + SLACK * (first.length() + beam.length);
+        let [columns, rows] = extent(sensor, [first, last], radius);
+        Self { moment, columns, rows }
+    }
+}
+
+/// Columns and rows that see a segment, relative to the eye, and all within `radius` of it.
+fn extent(sensor: &Sensor, ends: [DVec3; 2], radius: f64) -> [[f32; 2]; 2] {
+    let depths = ends.map(|end| end.dot(sensor.forward()));
+    let near = 2.0 * radius;
+    if depths[0].min(depths[1]) > near {
+        return hull(sensor, ends, radius);
+    }
+    // The point of the segment at some depth; the depths differ if it is between them.
+    let at = |depth: f64| {
+        let share = (depth - depths[0]) / (depths[1] - depths[0]);
+        ends[0] + share.clamp(0.0, 1.0) * (ends[1] - ends[0])
+    };
+    let (shallow, deep) = if depths[0] < depths[1] { (0, 1) } else { (1, 0) };
+    if depths[deep] < -radius {
+        return [NOWHERE; 2];
+    }
+    let cut = |end: usize, depth: f64, beyond: bool| if beyond { at(depth) } else { ends[end] };
+    let from = cut(shallow, -radius, depths[shallow] < -radius);
+    let to = cut(deep, near, depths[deep] > near);
+    let reached = sensor.half_extents().iter().all(|&(axis, half)| {
+        let (a, b) = (from.dot(axis), to.dot(axis));
+        let reach = (3.0 * half + 1.0) * radius * (1.0 + SLACK);
+        a.min(b) <= reach && a.max(b) >= -reach
+    });
+    if reached {
+        return [EVERYWHERE; 2];
+    }
+    if depths[deep] > near { hull(sensor, [to, ends[deep]], radius) } else { [NOWHERE; 2] }
+}
+
+/// Of a segment whose ends lie in front of the eye by more than the radius.
+fn hull(sensor: &Sensor, ends: [DVec3; 2], radius: f64) -> [[f32; 2]; 2] {
+    let [Some(a), Some(b)] = ends.map(|end| sensor.extent(end, radius)) else {
+        return [EVERYWHERE; 2];
+    };
+    [0, 1].map(|axis| {
+        let (first, last) = (a[axis].0.min(b[axis].0), a[axis].1.max(b[axis].1));
+        [(first as f32).next_down(), (last as f32).next_up()]
+    })
+}
+
+/// The beams of one pass as the camera sees them, and by rows of tiles.
+pub struct Sights {
+    /// Of each beam.
+    pub(crate) all: Vec<Sight>,
+    /// The beams that may be seen in each row of tiles, in their order.
+    pub(crate) bands: Vec<Vec<u32>>,
+}
+
+impl Sights {
+    /// For a film of `height` rows in tiles of `edge` rows.
+    pub fn new<const C: usize>(
+        sensor: &Sensor,
+        beams: &[Beam<C>],
+        radius: f64,
+        (height, edge): (usize, usize),
+    ) -> Self {
+        let all: Vec<_> = beams.par_iter().map(|beam| Sight::new(sensor, beam, radius)).collect();
+        let bands = (0..height.div_ceil(edge))
+            .into_par_iter()
+            .map(|band| {
+                let (first, last) = ((band * edge) as f32, ((band + 1) * edge) as f32);
+                let seen = |sight: &Sight| sight.rows[0] <= last && sight.rows[1] >= first;
+                (0..).zip(&all).filter(|(_, sight)| seen(sight)).map(|(index, _)| index).collect()
+            })
+            .collect();
+        Self { all, bands }
+    }
+}
