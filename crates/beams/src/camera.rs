@@ -41,9 +41,9 @@ use crate::{Settings, stream_item};
 /// start (Roberts 2018, the R2 sequence: 1/φ and 1/φ² of the plastic number φ).
 const PLASTIC: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
-/// Where in their pixels all paths of a sample start, from the pass's random `shift`. Every second
-/// sample is the mirror image of the one before in the pixel's middle: as all pixels share the place, an
-/// odd one out would move the whole image, to first order, and sums over it would be noisier.
+/// Where in their pixels the paths of a sample start, from a tile's random `shift`. Every second sample
+/// is the mirror image of the one before in the pixel's middle: as all pixels of a tile share the place,
+/// one alone moves what the tile shows, to first order, and sums over the image are noisier.
 fn sub_pixel(shift: [f64; 2], sample: u32) -> [f64; 2] {
     let pair = f64::from(sample / 2);
     let place = [0, 1].map(|axis| (shift[axis] + pair * PLASTIC[axis]).fract());
@@ -91,8 +91,9 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             .pixels()
             .map(|pixel| Stream::new(id.seed, id.index, stream_item::pixel(pixel)))
             .collect();
-        let mut all = Stream::new(id.seed, id.index, stream_item::FILM);
-        let shift = [all.uniform(), all.uniform()];
+        let first = tile.pixels().next().unwrap_or_default();
+        let mut of_tile = Stream::new(id.seed, id.index, stream_item::tile(first));
+        let shift = [of_tile.uniform(), of_tile.uniform()];
         let mut pairs = Pairs::default();
         for sample in 0..gather_samples.max(surface_samples) {
             let offset = sub_pixel(shift, sample);

@@ -56,10 +56,12 @@ pub mod sweep;
 pub use method::PhotonBeams;
 pub use options::{BeamLength, BeamOptions, KernelChoice, OptionError, Settings, Temporal};
 
-/// Items of the random streams: photons count from 0, pixels from 2⁶³.
+/// Items of the random streams: photons count from 0, pixels from 2⁶³, tiles from 3·2⁶².
 pub(crate) mod stream_item {
-    /// What all pixels share.
-    pub(crate) const FILM: u64 = u64::MAX;
+    /// The stream of the tile whose first pixel this is.
+    pub(crate) const fn tile(first: usize) -> u64 {
+        (3 << 62) | first as u64
+    }
 
     /// The stream of a pixel.
     pub(crate) const fn pixel(index: usize) -> u64 {
