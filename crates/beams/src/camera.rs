@@ -205,7 +205,7 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             }
         }
         // Neighbours in the image that go the same way see much the same.
-        turned.sort_by_key(|(path, (_, ray))| {
+        turned.sort_by_cached_key(|(path, (_, ray))| {
             let octant = ray.direction.to_array().map(|component| component < 0.0);
             (octant, morton(path.place % columns, path.place / columns))
         });

@@ -37,7 +37,10 @@ use crate::sight::Sight;
 const ROWS: usize = 16;
 /// Where a/(M·x)² is below this, all rays are taken.
 const FLAT: f64 = 0.02;
-/// Allowance for the rounding of an interval's ends, in pixels: they are f32 below 2¹⁰ or so.
+/// Ends of intervals are found in f32 where they are smaller, in pixels.
+const LARGEST_END: f32 = 4096.0;
+/// Allowance for the rounding of an interval's ends, in pixels: eight of 2⁻¹³, half a step of f32 at
+/// [`LARGEST_END`], and more.
 const END_SLACK: f32 = 2e-3;
 /// Allowance for the rounding of a beam's extent, in pixels.
 const EXTENT_SLACK: f64 = 1e-6;
@@ -250,7 +253,11 @@ impl Lattice {
             middle: [middle as f32, middle_per_row as f32],
             half: [half as f32, half_per_row as f32],
         };
-        (band.middle[0].abs() + band.half[0].abs() < 4096.0).then_some(band)
+        let rows = slow.end as f32;
+        let largest = band.middle[0].abs()
+            + band.half[0].abs()
+            + rows * (band.middle[1].abs() + band.half[1].abs());
+        (largest < LARGEST_END).then_some(band)
     }
 }
 

@@ -116,6 +116,8 @@ impl<const C: usize> Tile<'_, C> {
                 let depth = given.depth[c].vector(simd, index);
                 unsound = unsound + energy * 0.0 + depth * 0.0;
                 let share = part * (part * depth).mean_decay() / depth.mean_decay();
+                // Rounding must leave nothing negative for the next cell.
+                let share = share.min(F64s::splat(simd, 1.0));
                 let before = split.choose(energy * share, energy);
                 before.store(&mut here[c], index);
                 (energy - before).store(&mut next[c], index);

@@ -4,7 +4,7 @@ use crate::f64s::ROUND;
 use crate::{F64s, Simd};
 
 impl<S: Simd> F64s<S> {
-    /// exp(self) for at most 700, with a relative error of at most 4 · 2⁻⁵³; 0 below −708.
+    /// exp(self) for at most 700, with a relative error of at most 4 · 2⁻⁵³; 0 below −708, NaN for NaN.
     ///
     /// With k the integer nearest to x/ln 2, exp(x) = 2ᵏ exp(r), |r| ≤ ln(2)/2; the series of exp(r)
     /// is cut after r¹³/13!, where its rest is 4e-18.
@@ -22,7 +22,9 @@ impl<S: Simd> F64s<S> {
         let high = four(8, r, r2) + two(12, r) * r4;
         let sum = low + high * (r4 * r4);
         let power = sum * shifted.power_of_two();
-        Self::splat(simd, LEAST).less(self).of(power)
+        let zero = Self::splat(simd, 0.0);
+        let finite = self.less(Self::splat(simd, LEAST)).choose(zero, power);
+        self.at_most(self).choose(finite, self)
     }
 
     /// (1 − exp(−self))/self, the mean of exp(−x) from 0 to self, which is not negative; 1 for 0,

@@ -26,20 +26,6 @@ pub fn dispatch<W: WithSimd>(work: W) -> W::Output {
     pulp::Arch::new().dispatch(work)
 }
 
-/// [`dispatch`] of what leaves vectors to the compiler.
-pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
-    struct Work<F>(F);
-    impl<R, F: FnOnce() -> R> WithSimd for Work<F> {
-        type Output = R;
-
-        #[inline(always)]
-        fn with_simd<S: Simd>(self, _: S) -> R {
-            (self.0)()
-        }
-    }
-    dispatch(Work(work))
-}
-
 /// Numbers that can be read as vectors.
 pub trait Vectors {
     /// As many of them as a register holds.
