@@ -88,10 +88,10 @@ pub(crate) struct Shared<const C: usize> {
     cosine: Form,
     /// M·e.
     moment: Form,
+    /// M.
+    line: [f64; 3],
     /// |M|.
     distance: f64,
-    /// p⊥·e.
-    foot: Form,
     /// p·d.
     along: f64,
     length: f64,
@@ -198,6 +198,7 @@ impl<const C: usize> Shared<C> {
         };
         let a = g.abs();
         let along = p.dot(beam.direction);
+        let line = p.cross(beam.direction);
         let scale = drawn.share * ISOTROPIC * (1.0 - a * a);
         let mut power = [0.0; C];
         for (c, power) in power.iter_mut().enumerate() {
@@ -208,8 +209,8 @@ impl<const C: usize> Shared<C> {
             normal: lattice.cross(beam.direction),
             cosine: drawn.cosine,
             moment: drawn.moment,
-            distance: p.cross(beam.direction).length(),
-            foot: lattice.form(p - along * beam.direction),
+            line: line.to_array(),
+            distance: line.length(),
             along,
             length: beam.length,
             opl: beam.opl,
@@ -247,12 +248,14 @@ impl<const C: usize> Shared<C> {
         let (i, j) = (loaded.column.vector(simd, index), loaded.row.vector(simd, index));
         let [nx, ny, nz] = self.normal;
         let (nx, ny, nz) = (nx.over(i, j), ny.over(i, j), nz.over(i, j));
+        let [mx, my, mz] = self.line;
         Pairs {
             places: j * self.columns + i,
             squared: nx * nx + ny * ny + nz * nz,
             across: self.moment.over(i, j),
             cosine: self.cosine.over(i, j),
-            foot: self.foot.over(i, j),
+            // p⊥·e = (d × M)·e: from p⊥ itself it would cancel where pair and view are nearly parallel.
+            foot: -(nx * mx + ny * my + nz * mz),
             norm: loaded.norm.vector(simd, index),
             start: loaded.start.vector(simd, index),
             end: loaded.end.vector(simd, index),
