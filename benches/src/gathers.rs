@@ -59,7 +59,6 @@ impl Gathers {
                 kernel,
                 beams,
                 sights: &sights,
-                band: tile.rows().start / edge,
                 rays: &rays,
                 temporal: Temporal::Exact,
                 share: 1.0,

@@ -12,7 +12,8 @@
 //! exceeds the radius comes near no ray of the bundle. Beams whose boxes miss that of the bundle
 //! drop out too. (Plücker coordinates: Shoemake 1998, "Plücker Coordinate Tutorial".)
 //!
-//! All of this is f32 and culls only: allowances cover its rounding.
+//! All of this is f32 and culls only: allowances cover its rounding. They are relative to each line's
+//! own moment, so that a few beams of kilometres in thin media do not blur the rest.
 
 use glam::DVec3;
 use tpb_accel::Aabb;
@@ -23,9 +24,15 @@ use crate::beam::{Beam, CameraRay};
 /// Beams, or rays, that are tested together.
 pub(crate) const BLOCK: usize = 16;
 
-/// Allowance for the rounding of the form, of lengths about 1: a dozen roundings of 2⁻²⁴, of sums
-/// of six products.
+/// Allowance for the rounding of f32, relative: a dozen roundings of 2⁻²⁴, of sums of six products, and
+/// more.
 const SLACK: f32 = 4e-6;
+/// Allowance for the rounding of f64, of places at distances of 1.
+const ROUNDING: f64 = 1e-14;
+/// Radii below this are taken as this: their squares would leave the range of f32.
+const LEAST_RADIUS: f32 = 1e-16;
+/// Beams whose origins tell where most are.
+const ASKED: usize = 1001;
 
 /// As many numbers as a block has lines.
 pub(crate) type Numbers = [f32; BLOCK];
@@ -63,6 +70,8 @@ pub(crate) struct Bundle {
 pub(crate) struct RayBlock {
     direction: [Numbers; 3],
     moment: [Numbers; 3],
+    /// Allowance for the rounding of each ray's moment.
+    rounding: Numbers,
 }
 
 /// A ray within the frame.
@@ -71,24 +80,27 @@ pub(crate) struct Line {
     direction: DVec3,
     moment: DVec3,
     ends: Aabb,
+    /// Allowance for the rounding of both, of f64.
+    rounding: f64,
 }
 
 impl Frame {
     /// Around beams with what lies within `radius` of them.
     pub(crate) fn new<const C: usize>(beams: &[Beam<C>], radius: f64) -> Self {
-        let ends = beams.iter().flat_map(|beam| [beam.origin, end(beam)]);
-        let around = Aabb::around(ends);
         if beams.is_empty() {
             return Self { centre: DVec3::ZERO, scale: 1.0 };
         }
-        let centre = around.min + 0.5 * (around.max - around.min);
-        let reach = 0.5 * (around.max - around.min).length() + radius;
+        let ends = beams.iter().flat_map(|beam| [beam.origin, end(beam)]);
+        let around = Aabb::around(ends);
+        let centre = centre(beams);
+        let reach = (around.max - centre).max(centre - around.min).length() + radius;
         Self { centre, scale: 1.0 / reach.max(f64::MIN_POSITIVE) }
     }
 
     /// A length in this frame, rounded up.
     pub(crate) fn radius(&self, radius: f64) -> f32 {
-        ((radius * self.scale) as f32).next_up() + SLACK
+        let radius = (radius * self.scale + ROUNDING) as f32;
+        (radius * (1.0 + SLACK)).max(LEAST_RADIUS)
     }
 
     fn point(&self, point: DVec3) -> DVec3 {
@@ -100,16 +112,33 @@ impl Frame {
         let (origin, direction) = (self.point(ray.origin), ray.direction);
         let along = -origin.dot(direction);
         let foot = origin + along * direction;
-        let half = (1.0 - foot.length_squared() + f64::from(SLACK)).max(0.0).sqrt();
-        let (first, last) = ((along - half).max(0.0), (along + half).min(ray.length * self.scale));
         // A far origin's rounding must not lose the ray.
-        let sure = origin.length() < 1e9;
-        if sure && (first > last || foot.length_squared() > 1.0 + f64::from(SLACK)) {
+        let rounding = ROUNDING * origin.length();
+        let ball = 1.0 + f64::from(SLACK) + rounding;
+        let half = (ball * ball - foot.length_squared()).max(0.0).sqrt();
+        let (first, last) = ((along - half).max(0.0), (along + half).min(ray.length * self.scale));
+        if first > last || foot.length_squared() > ball * ball {
             return None;
         }
         let ends = Aabb::around([origin + first * direction, origin + last * direction]);
-        Some(Line { direction, moment: foot.cross(direction), ends })
+        Some(Line { direction, moment: foot.cross(direction), ends, rounding })
     }
+}
+
+/// Where most beams start, by axis.
+fn centre<const C: usize>(beams: &[Beam<C>]) -> DVec3 {
+    let asked = beams.iter().step_by(beams.len().div_ceil(ASKED));
+    DVec3::from_array([0, 1, 2].map(|axis| {
+        let mut places: Vec<_> = asked.clone().map(|beam| beam.origin[axis]).collect();
+        let middle = places.len() / 2;
+        *places.select_nth_unstable_by(middle, f64::total_cmp).1
+    }))
+}
+
+/// A number in f32 with allowance for its rounding, downward and upward.
+fn outward(number: f64, rounding: f64) -> [f32; 2] {
+    let allowance = rounding + f64::from(SLACK) * number.abs();
+    [(number - allowance) as f32, (number + allowance) as f32]
 }
 
 fn end<const C: usize>(beam: &Beam<C>) -> DVec3 {
@@ -137,8 +166,8 @@ impl BeamBlock {
             for axis in 0..3 {
                 block.direction[axis][lane] = beam.direction[axis] as f32;
                 block.moment[axis][lane] = moment[axis] as f32;
-                block.low[axis][lane] = from[axis].min(to[axis]) as f32 - SLACK;
-                block.high[axis][lane] = from[axis].max(to[axis]) as f32 + SLACK;
+                [block.low[axis][lane], _] = outward(from[axis].min(to[axis]), 0.0);
+                [_, block.high[axis][lane]] = outward(from[axis].max(to[axis]), 0.0);
             }
             block.index[lane] = (first + lane) as u32;
         }
@@ -199,36 +228,46 @@ struct Range {
 impl Bundle {
     /// Around rays; `None` if there are none.
     pub(crate) fn around(lines: impl Iterator<Item = Line> + Clone) -> Option<Self> {
-        let ranges = |all: Aabb| {
-            [0, 1, 2].map(|axis| {
-                let middle = (0.5 * (all.min[axis] + all.max[axis])) as f32;
-                let half =
-                    (all.max[axis] - f64::from(middle)).max(f64::from(middle) - all.min[axis]);
-                Range { middle, half: (half as f32).next_up() }
-            })
-        };
+        let rounding = lines.clone().map(|line| line.rounding).fold(0.0, f64::max);
         let direction = Aabb::around(lines.clone().map(|line| line.direction));
         let moment = Aabb::around(lines.clone().map(|line| line.moment));
         let ends = lines.map(|line| line.ends).fold(Aabb::EMPTY, Aabb::union);
         (direction.min.x <= direction.max.x).then(|| Self {
-            direction: ranges(direction),
-            moment: ranges(moment),
-            low: [0, 1, 2].map(|axis| (ends.min[axis] as f32).next_down()),
-            high: [0, 1, 2].map(|axis| (ends.max[axis] as f32).next_up()),
+            direction: [0, 1, 2].map(|axis| Range::of(direction, axis, 0.0)),
+            moment: [0, 1, 2].map(|axis| Range::of(moment, axis, rounding)),
+            low: [0, 1, 2].map(|axis| outward(ends.min[axis], rounding)[0]),
+            high: [0, 1, 2].map(|axis| outward(ends.max[axis], rounding)[1]),
         })
     }
 }
 
+impl Range {
+    /// One axis of a box, with allowance for rounding.
+    fn of(all: Aabb, axis: usize, rounding: f64) -> Self {
+        let (min, max) = (all.min[axis], all.max[axis]);
+        let middle = 0.5 * (min + max) as f32;
+        let half = (max - f64::from(middle)).max(f64::from(middle) - min);
+        let [_, half] = outward(half, rounding + f64::from(SLACK) * min.abs().max(max.abs()));
+        Self { middle, half }
+    }
+}
+
 impl RayBlock {
-    /// Of up to [`BLOCK`] rays; what is no ray is near nothing.
+    /// Of up to [`BLOCK`] rays. What is no ray is far from most beams; the kernel joins it to none.
     pub(crate) fn new(lines: &[Option<Line>]) -> Self {
-        let mut block = Self { direction: [[0.0; BLOCK]; 3], moment: [[FAR; BLOCK]; 3] };
+        let mut block = Self {
+            direction: [[0.0; BLOCK]; 3],
+            moment: [[FAR; BLOCK]; 3],
+            rounding: [0.0; BLOCK],
+        };
         for (lane, line) in lines.iter().enumerate() {
             let Some(line) = line else { continue };
             for axis in 0..3 {
                 block.direction[axis][lane] = line.direction[axis] as f32;
                 block.moment[axis][lane] = line.moment[axis] as f32;
             }
+            let size = line.moment.abs().element_sum();
+            [_, block.rounding[lane]] = outward(f64::from(SLACK) * size, line.rounding);
         }
         block
     }
@@ -242,6 +281,7 @@ impl RayBlock {
         lane: usize,
         radius: f32,
     ) -> Numbers {
+        let size: f32 = (0..3).map(|axis| beams.moment[axis][lane].abs()).sum();
         let mut near = [0.0; BLOCK];
         for index in 0..BLOCK / S::F32_LANES {
             let mut form = F32s::splat(simd, 0.0);
@@ -254,7 +294,8 @@ impl RayBlock {
             }
             // |d × ω|², which cancels for parallel lines.
             let sine2 = F32s::splat(simd, 1.0 + SLACK) - cosine * cosine;
-            let beyond = (form.abs() - SLACK).max(F32s::splat(simd, 0.0));
+            let rounding = self.rounding.vector(simd, index) + SLACK * size;
+            let beyond = (form.abs() - rounding).max(F32s::splat(simd, 0.0));
             let is_near = (beyond * beyond).at_most(sine2 * (radius * radius));
             is_near.of(F32s::splat(simd, 1.0)).store(&mut near, index);
         }

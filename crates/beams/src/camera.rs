@@ -59,8 +59,6 @@ pub(crate) struct Camera<'a, const C: usize, K> {
     pub(crate) beams: &'a [Beam<C>],
     /// What rays straight from the eye may meet.
     pub(crate) sights: &'a Sights,
-    /// Rows of a tile.
-    pub(crate) tile_edge: usize,
     /// For rays that mirrors, glass or rough surfaces have turned; `None` in scenes without.
     pub(crate) turned: Option<&'a BeamMap<'a, C>>,
     pub(crate) photons: &'a SurfaceMap<C>,
@@ -139,12 +137,10 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
         tile: &mut Tile<'_, C>,
     ) -> Pairs {
         let rays = TileRays::new(self.scene, lattice, flights);
-        let band = tile.rows().start / self.tile_edge;
         let splat = Splat {
             kernel: self.kernel,
             beams: self.beams,
             sights: self.sights,
-            band,
             rays: &rays,
             temporal: self.settings.temporal,
             share,

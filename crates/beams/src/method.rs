@@ -56,8 +56,7 @@ impl<'a> PhotonBeams<'a> {
         let Self { scene, plan, integrator, settings } = self;
         let integrator = *integrator;
         let radius = kernel.radius();
-        let tile_edge = film.tile_edge(Grain::Coarse);
-        let rows = (scene.film.height, tile_edge);
+        let rows = (scene.film.height, film.tile_edge(Grain::Coarse));
         let sights = &Sights::new(&scene.sensor, beams, radius, rows);
         let turning = [&plan.refracting, &plan.mirrors, &plan.rough];
         let turned = turning.iter().any(|shapes| !shapes.is_empty());
@@ -69,7 +68,6 @@ impl<'a> PhotonBeams<'a> {
             settings,
             beams,
             sights,
-            tile_edge,
             turned: turned.as_ref(),
             photons,
             kernel,

@@ -12,8 +12,13 @@ use tpb_scene::Sensor;
 
 use crate::beam::Beam;
 
-/// Relative allowance for rounding.
+/// Relative allowance for the rounding of what a radius is compared with.
 const SLACK: f64 = 1e-9;
+/// Allowance for the rounding of places, relative to their distances: some hundred of f64. Beams in
+/// thin media are long, and a larger allowance would let all of them be seen from everywhere.
+const ROUNDING: f64 = 1e-13;
+/// Beams are listed by at least so many rows of the film.
+const BAND: usize = 64;
 
 /// A beam as the camera sees it.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +40,7 @@ impl Sight {
         let first = beam.origin - sensor.position;
         let moment = first.cross(beam.direction);
         let last = first + beam.length * beam.direction;
-        let radius = radius * (1.0 + SLACK) + SLACK * (first.length() + beam.length);
+        let radius = radius * (1.0 + SLACK) + ROUNDING * (first.length() + beam.length);
         let [columns, rows] = extent(sensor, [first, last], radius);
         Self { moment, columns, rows }
     }
@@ -82,12 +87,14 @@ fn hull(sensor: &Sensor, ends: [DVec3; 2], radius: f64) -> [[f32; 2]; 2] {
     })
 }
 
-/// The beams of one pass as the camera sees them, and by rows of tiles.
+/// The beams of one pass as the camera sees them, and by rows of the film.
 pub struct Sights {
     /// Of each beam.
     pub(crate) all: Vec<Sight>,
-    /// The beams that may be seen in each row of tiles, in their order.
-    pub(crate) bands: Vec<Vec<u32>>,
+    /// The beams that may be seen in each band of rows, in their order.
+    bands: Vec<Vec<u32>>,
+    /// Rows of a band.
+    rows: usize,
 }
 
 impl Sights {
@@ -99,14 +106,20 @@ impl Sights {
         (height, edge): (usize, usize),
     ) -> Self {
         let all: Vec<_> = beams.par_iter().map(|beam| Sight::new(sensor, beam, radius)).collect();
-        let bands = (0..height.div_ceil(edge))
+        let rows = edge * BAND.div_ceil(edge);
+        let bands = (0..height.div_ceil(rows))
             .into_par_iter()
             .map(|band| {
-                let (first, last) = ((band * edge) as f32, ((band + 1) * edge) as f32);
+                let (first, last) = ((band * rows) as f32, ((band + 1) * rows) as f32);
                 let seen = |sight: &Sight| sight.rows[0] <= last && sight.rows[1] >= first;
                 (0..).zip(&all).filter(|(_, sight)| seen(sight)).map(|(index, _)| index).collect()
             })
             .collect();
-        Self { all, bands }
+        Self { all, bands, rows }
+    }
+
+    /// The beams that a tile may see, and more; `row` is its first.
+    pub(crate) fn listed(&self, row: usize) -> &[u32] {
+        &self.bands[row / self.rows]
     }
 }

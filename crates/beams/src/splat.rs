@@ -196,7 +196,7 @@ impl<const C: usize> Drawn<'_, C> {
     }
 }
 
-/// All beams of a pass that a row of tiles sees, to be drawn over one of its tiles.
+/// All beams of a pass, to be drawn over a tile.
 pub struct Splat<'a, const C: usize, K> {
     /// The kernel.
     pub kernel: K,
@@ -204,8 +204,6 @@ pub struct Splat<'a, const C: usize, K> {
     pub beams: &'a [Beam<C>],
     /// What the camera sees of them.
     pub sights: &'a Sights,
-    /// The row of tiles.
-    pub band: usize,
     /// The tile's rays.
     pub rays: &'a TileRays<'a, C>,
     /// How contributions are spread in time.
@@ -227,12 +225,12 @@ impl<const C: usize, K: RayBeamKernel> Splat<'_, C, K> {
         counts: impl Fn(u32) -> bool,
         tile: &mut Tile<'_, C>,
     ) -> Pairs {
-        let &Self { kernel, beams, sights, band, rays, temporal, share } = self;
+        let &Self { kernel, beams, sights, rays, temporal, share } = self;
         let lattice = &rays.lattice;
         let radius = kernel.radius() * (1.0 + 1e-9);
         let mut found = vec![Knot::default(); lattice.room()];
         let mut pairs = Pairs::default();
-        for &index in &sights.bands[band] {
+        for &index in sights.listed(tile.rows().start) {
             let (sight, beam) = (&sights.all[index as usize], &beams[index as usize]);
             if !lattice.sees(sight) || !counts(beam.depth) {
                 continue;

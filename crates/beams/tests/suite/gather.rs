@@ -123,6 +123,26 @@ fn bundles_find_exactly_the_pairs_of_brute_force() {
     }
 }
 
+/// In thin fog without walls beams and rays are far longer than the scene.
+#[test]
+fn lines_of_a_thousand_kilometres_are_told_apart() {
+    let mut rng = Stream::new(5, 0, 0);
+    let mut beams = beams(1.0, 600, &mut rng);
+    beams.iter_mut().for_each(|beam| (beam.length, beam.medium) = (1e9, MediumId(1)));
+    beams[300].origin *= 1e8;
+    let mut rays = rays(1.0, 400, &mut rng);
+    rays.iter_mut().for_each(|ray| ray.length = 1e9);
+    let kernel = Kernel1d { radius: 0.02 };
+    let expected: usize =
+        rays.iter().map(|ray| beams.iter().filter(|b| joins(kernel, b, ray)).count()).sum();
+    let map = BeamMap::new(kernel, &beams);
+    let rays: Vec<_> = rays.into_iter().map(|ray| (MediumId(1), ray)).collect();
+    let pairs = map.query(kernel, &rays, |_, _, _| ());
+    assert_eq!(pairs.accepted as usize, expected);
+    // Lines are told apart; rays and beams are half of theirs.
+    assert!(expected > 500 && pairs.tested < 6 * pairs.accepted, "{pairs:?}");
+}
+
 /// Flights from an eye amid the beams, over the whole image: through one medium from the eye, from
 /// farther on, through two media, through none.
 fn flights(scene: &Scene, lattice: &Lattice, scale: f64, rng: &mut Stream) -> Vec<Flight> {
@@ -161,7 +181,8 @@ fn check_splat<K: RayBeamKernel>(
     for (index, beam) in beams.iter_mut().enumerate() {
         beam.opl = (index as f64 + 0.25) * bin;
     }
-    let (width, height) = (37, 22);
+    // Also an image of several bands of rows.
+    let (width, height) = if scale == 1.0 { (6, 140) } else { (37, 22) };
     let eye = position(0.5 * scale, &mut rng);
     let sensor = scenes::camera(eye, direction(&mut rng), fov, (width, height));
     let light = scenes::point(DVec3::ZERO, tpb_optics::Rgb::ONE);
@@ -180,12 +201,10 @@ fn check_splat<K: RayBeamKernel>(
         let lattice = Lattice::new(&scene.sensor, tile, offset);
         let flights = flights(&scene, &lattice, scale, &mut draw.clone());
         let rays = TileRays::new(&scene, lattice, &flights);
-        let band = tile.rows().start / edge;
         let splat = Splat {
             kernel,
             beams: &beams,
             sights: &sights,
-            band,
             rays: &rays,
             temporal: Temporal::Exact,
             share: 1.0,
