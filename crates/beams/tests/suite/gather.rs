@@ -128,10 +128,14 @@ fn bundles_find_exactly_the_pairs_of_brute_force() {
 fn lines_of_a_thousand_kilometres_are_told_apart() {
     let mut rng = Stream::new(5, 0, 0);
     let mut beams = beams(1.0, 600, &mut rng);
-    beams.iter_mut().for_each(|beam| (beam.length, beam.medium) = (1e9, MediumId(1)));
+    for beam in &mut beams {
+        (beam.length, beam.medium) = (1e9, MediumId(1));
+    }
     beams[300].origin *= 1e8;
     let mut rays = rays(1.0, 400, &mut rng);
-    rays.iter_mut().for_each(|ray| ray.length = 1e9);
+    for ray in &mut rays {
+        ray.length = 1e9;
+    }
     let kernel = Kernel1d { radius: 0.02 };
     let expected: usize =
         rays.iter().map(|ray| beams.iter().filter(|b| joins(kernel, b, ray)).count()).sum();
