@@ -12,6 +12,7 @@
 //!   pixels. [`long_render`]: the long render that they are compared with; [`reference_cube`]: the
 //!   small file that ships of it. [`watch`]: who follows what takes long, and may end it.
 //! * [`run_time`]: how the error of a method falls with the time it is given.
+//! * [`peers`]: other programs side by side with ours.
 //! * [`gallery`]: scenes that show what the renderer can do, and the page of them.
 //! * [`reproduce`]: the source's figures made again, with errors.
 //! * [`taps`]: photons at given optical path lengths, for what no camera sees.
@@ -36,6 +37,7 @@ pub mod measure;
 pub mod memory;
 pub mod microfacet;
 pub mod pages;
+pub mod peers;
 pub mod reference_cube;
 pub mod registry;
 pub mod report;

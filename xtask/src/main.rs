@@ -7,6 +7,7 @@ mod error_time;
 mod gallery;
 mod gate;
 mod meshes;
+mod peers;
 mod reproduce;
 mod schema;
 mod stress;
@@ -53,6 +54,8 @@ enum Task {
     Doctor,
     /// Makes the paper's scenes and figures again, with errors, delays and caustics: pages, table.
     Reproduce(reproduce::ReproduceArgs),
+    /// Compares with other programs (mitransient) on the same scenes at equal CPU seconds.
+    Peers(peers::PeersArgs),
     /// Renders the long reference cube of an equal-time comparison.
     ReferenceRender(validate::ReferenceRenderArgs),
     /// Checks scene.schema.json against the code, or writes it.
@@ -77,6 +80,7 @@ fn main() -> ExitCode {
         Task::Dashboard(args) => dashboard::run(&args),
         Task::Doctor => doctor::run(),
         Task::Reproduce(args) => reproduce::run(&args),
+        Task::Peers(args) => peers::run(&args),
         Task::ReferenceRender(args) => validate::reference_render(&args),
         Task::Schema { write } => schema::run(write),
         Task::Tidy => tidy::run(),

@@ -16,31 +16,32 @@ use crate::statistics::{Gram, ReferenceNoise};
 
 /// Seconds since a run was started.
 #[derive(Clone, Copy, Debug, Default)]
-struct Seconds {
-    wall: f64,
-    cpu: f64,
+pub(crate) struct Seconds {
+    pub(crate) wall: f64,
+    pub(crate) cpu: f64,
 }
 
 impl Seconds {
     /// `cpu` is `None` where the system does not tell.
-    fn add(&mut self, wall: f64, cpu: Option<f64>) {
+    pub(crate) fn add(&mut self, wall: f64, cpu: Option<f64>) {
         self.wall += wall;
         self.cpu += cpu.unwrap_or(wall);
     }
 }
 
 /// A film as it stood at a checkpoint.
-struct Snapshot {
-    seconds: Seconds,
+pub(crate) struct Snapshot {
+    pub(crate) passes: u64,
+    pub(crate) seconds: Seconds,
     /// Residuals of the judged pixels' bins, and their rounding to f32 is far below any noise.
-    residuals: Vec<f32>,
+    pub(crate) residuals: Vec<f32>,
 }
 
 /// One run.
-struct Run {
-    setup_seconds: f64,
-    options: serde_json::Value,
-    snapshots: Vec<Snapshot>,
+pub(crate) struct Run {
+    pub(crate) setup_seconds: f64,
+    pub(crate) options: serde_json::Value,
+    pub(crate) snapshots: Vec<Snapshot>,
 }
 
 impl RunTimePlan<'_> {
@@ -79,7 +80,7 @@ impl RunTimePlan<'_> {
         }
         let judged = self.reference.mask.iter().filter(|&&judged| judged).count();
         let curves = self.methods.iter().zip(runs).map(|(estimator, runs)| {
-            curve(estimator, runs, &noise, judged * self.reference.cube.bins)
+            curve(estimator.label(), runs, &noise, judged * self.reference.cube.bins)
         });
         Ok(ErrorAgainstTime {
             scene: self.name.clone(),
@@ -118,7 +119,7 @@ impl RunTimePlan<'_> {
             let summary = double::<C>(&*method, &mut film, seed)?;
             seconds.add(summary.wall_seconds, summary.cpu_seconds);
             let residuals = residuals(&Cube::of(&film.develop()), self.reference);
-            run.snapshots.push(Snapshot { seconds, residuals });
+            run.snapshots.push(Snapshot { passes: film.passes(), seconds, residuals });
         }
         Ok(run)
     }
@@ -146,7 +147,7 @@ fn double<const C: usize>(
     Ok(summary)
 }
 
-fn residuals(cube: &Cube, reference: &ReferenceCube) -> Vec<f32> {
+pub(crate) fn residuals(cube: &Cube, reference: &ReferenceCube) -> Vec<f32> {
     let judged = (0..cube.pixels()).filter(|&pixel| reference.mask[pixel]);
     judged
         .flat_map(|pixel| cube.pixel_bins(pixel).iter().zip(reference.cube.pixel_bins(pixel)))
@@ -154,8 +155,13 @@ fn residuals(cube: &Cube, reference: &ReferenceCube) -> Vec<f32> {
         .collect()
 }
 
-/// Puts the replicates of one method together, checkpoint by checkpoint.
-fn curve(estimator: &Estimator, mut runs: Vec<Run>, noise: &ReferenceNoise, cells: usize) -> Curve {
+/// Puts the replicates of one method together, checkpoint by checkpoint: all have the same.
+pub(crate) fn curve(
+    method: &str,
+    mut runs: Vec<Run>,
+    noise: &ReferenceNoise,
+    cells: usize,
+) -> Curve {
     let n = runs.len() as f64;
     let mut checkpoints = Vec::new();
     let (mut errors, mut variances) = (Vec::new(), Vec::new());
@@ -171,7 +177,7 @@ fn curve(estimator: &Estimator, mut runs: Vec<Run>, noise: &ReferenceNoise, cell
         let mean = |of: fn(&Seconds) -> f64| seconds.iter().map(of).sum::<f64>() / n;
         let (wall_seconds, cpu_seconds) = (mean(|s| s.wall), mean(|s| s.cpu));
         checkpoints.push(Checkpoint {
-            passes: 1 << index,
+            passes: runs[0].snapshots[index].passes,
             wall_seconds,
             cpu_seconds,
             rmse: root(split.nmse, noise.signal() / cells as f64),
@@ -188,7 +194,7 @@ fn curve(estimator: &Estimator, mut runs: Vec<Run>, noise: &ReferenceNoise, cell
         variances.extend(resolved(split.variance, 1));
     }
     Curve {
-        method: estimator.label().into(),
+        method: method.into(),
         options: runs[0].options.take(),
         setup_seconds: runs.iter().map(|run| run.setup_seconds).sum::<f64>() / n,
         checkpoints,

@@ -16,7 +16,7 @@
 //! whose radius shrinks at its best rate, 0 once a bias that does not shrink is all that is left.
 
 mod draw;
-mod measure;
+pub(crate) mod measure;
 mod slope;
 mod table;
 

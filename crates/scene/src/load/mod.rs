@@ -27,6 +27,8 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::Path;
 
+use glam::DAffine3;
+
 use crate::Scene;
 use crate::assemble::check_camera;
 use build::Builder;
@@ -95,6 +97,13 @@ pub fn parse_scene(
             Err(SceneError::new(source, Some(&root), trouble).with_note(culprit))
         }
     }
+}
+
+/// The map of a list of steps, as it stands in [`LoadedScene::canonical`]; `None` if it is no list of
+/// steps, or degenerate.
+pub fn to_world(steps: &serde_json::Value) -> Option<DAffine3> {
+    let node = scan::scan(&Source::new("to_world", steps.to_string())).ok()?;
+    transform::to_affine(&de::read(&node).ok()?, &node).ok()
 }
 
 fn build_scene(root: &Node, directory: &Path) -> Result<Scene, Trouble> {
