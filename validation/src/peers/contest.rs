@@ -10,10 +10,6 @@
 //! seconds, as [`crate::equal_time`] does: as a ratio of means by the delta method, and, for methods with
 //! fireflies, as a ratio of medians with a bootstrap interval. Ours include the method's preparation; the
 //! peer's leave out its start, compilation and tracing, in its favour.
-//!
-//! That both render the same is measured by three numbers of each replicate, over judged pixels: the
-//! sum of all bins, the sum of the steady image, and the mean arrival in bins. The peer is compared with
-//! the unbiased one of ours (the reference's method), Welch's interval at [`AGREEMENT`].
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -21,9 +17,9 @@ use tpb_film::{FilmOptions, TransientFilm};
 use tpb_optics::seed_of;
 use tpb_render::{Budget, Method, RunSettings, Stopwatch, run};
 use tpb_scene::{Plan, Scene, Transport};
-use tpb_statistics::VarianceSum;
 
 use super::NAME;
+use super::agreement::{Agreement, agreement, totals};
 use super::driver::{Introduction, Peer};
 use crate::cube::Cube;
 use crate::error::{Result, ValidationError};
@@ -31,13 +27,9 @@ use crate::measure::{Estimator, layout};
 use crate::reference_cube::ReferenceCube;
 use crate::run_time::measure::{Run, Seconds, Snapshot, curve, residuals};
 use crate::run_time::{CONFIDENCE, ErrorAgainstTime};
-use crate::statistics::batches::summarise;
 use crate::statistics::split::Estimate;
 use crate::statistics::{Gram, RatioInterval, Split, bootstrap, ratio_of_means};
 use crate::suite::Circumstances;
-
-/// Confidence of the intervals that decide whether both render the same.
-pub const AGREEMENT: f64 = 0.999;
 
 /// A run is observed after these parts of its passes.
 const PARTS: [f64; 5] = [1.0 / 16.0, 0.125, 0.25, 0.5, 1.0];
@@ -109,24 +101,6 @@ pub struct Row {
     pub less: Option<RatioInterval>,
     /// The same of medians, with its bootstrap interval.
     pub less_median: Option<(f64, [f64; 2])>,
-}
-
-/// One number of the peer's image against ours.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Agreement {
-    /// Which.
-    pub what: String,
-    /// The peer's less ours, relative to ours, or in bins.
-    pub difference: f64,
-    /// Its interval at [`AGREEMENT`].
-    pub interval: [f64; 2],
-}
-
-impl Agreement {
-    /// Whether 0 is in the interval.
-    pub fn holds(&self) -> bool {
-        self.interval[0] <= 0.0 && 0.0 <= self.interval[1]
-    }
 }
 
 /// Who renders.
@@ -294,9 +268,10 @@ impl ContestPlan<'_> {
             row.less = ratio_of_means(last, work, CONFIDENCE);
             row.less_median = Some(bootstrap::ratio_of_medians(last, work, CONFIDENCE));
         }
-        let unbiased = |name: &&str| **name == self.reference.provenance.method;
-        let agreement = match names.iter().position(|name| unbiased(&name)) {
-            Some(at) => agreement(&ended[at], &ended[names.len() - 1]),
+        let unbiased = |name: &&str| *name == self.reference.provenance.method;
+        let of = |at: usize| ended[at].iter().map(|e| e.totals).collect::<Vec<_>>();
+        let agreement = match names.iter().position(unbiased) {
+            Some(at) => agreement(&of(at), &of(names.len() - 1)),
             None => Vec::new(),
         };
         let cells = judged * self.reference.cube.bins;
@@ -388,42 +363,6 @@ fn parts(passes: f64) -> Vec<u64> {
     parts
 }
 
-fn totals(cube: &Cube, judged: &[bool]) -> [f64; 3] {
-    let (mut window, mut steady, mut moment) = (0.0, 0.0, 0.0);
-    for pixel in (0..cube.pixels()).filter(|&pixel| judged[pixel]) {
-        steady += cube.pixel(pixel).iter().sum::<f64>();
-        for (bin, value) in cube.pixel_bins(pixel).iter().enumerate() {
-            window += value;
-            moment += value * (bin as f64 + 0.5);
-        }
-    }
-    [window, steady, moment / window]
-}
-
-/// The peer's numbers against ours.
-fn agreement(ours: &[Ended], peer: &[Ended]) -> Vec<Agreement> {
-    let what = ["sum of all bins", "steady image", "mean arrival, in bins"];
-    let compare = |index: usize| {
-        let of = |ended: &[Ended]| -> Vec<f64> { ended.iter().map(|e| e.totals[index]).collect() };
-        let (ours, peer) = (of(ours), of(peer));
-        let unit = if index < 2 { summarise(&ours).mean } else { 1.0 };
-        difference(what[index], &peer, &ours, unit)
-    };
-    (0..3).map(compare).collect()
-}
-
-/// The difference of two means over `unit`, Welch's interval.
-fn difference(what: &str, a: &[f64], b: &[f64], unit: f64) -> Agreement {
-    let (x, y) = (summarise(a), summarise(b));
-    let half = VarianceSum::default()
-        .and(x.standard_error.powi(2), a.len() as f64 - 1.0)
-        .and(y.standard_error.powi(2), b.len() as f64 - 1.0)
-        .half_width(0.5 * (1.0 - AGREEMENT));
-    let (difference, half) = ((x.mean - y.mean) / unit, half.unwrap_or(f64::INFINITY) / unit);
-    let interval = [difference - half, difference + half];
-    Agreement { what: what.to_owned(), difference, interval }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -434,25 +373,5 @@ mod tests {
         assert_eq!(parts(3.4), [1, 2, 3]);
         assert_eq!(parts(0.2), [1]);
         assert_eq!(parts(-1.0), [1]);
-    }
-
-    #[test]
-    fn differences_are_found_where_they_are() {
-        let around =
-            |mean: f64| (0..16).map(|i| mean + 0.01 * f64::from(i % 4)).collect::<Vec<_>>();
-        let same = difference("x", &around(2.0), &around(2.0), 2.0);
-        assert!(same.holds() && same.difference == 0.0);
-        let found = difference("x", &around(2.1), &around(2.0), 2.0);
-        assert!(!found.holds() && (found.difference - 0.05).abs() < 1e-12, "{found:?}");
-        let unresolved = difference("x", &[2.1], &[2.0, 2.0], 2.0);
-        assert!(unresolved.holds(), "a single run tells nothing");
-    }
-
-    #[test]
-    fn totals_are_of_judged_pixels_and_know_what_lies_outside() {
-        let mut cube = Cube::zero(2, 1, 2);
-        cube.pixel_mut(0).copy_from_slice(&[1.0, 2.0, 6.0, 4.0]);
-        cube.pixel_mut(1).fill(100.0);
-        assert_eq!(totals(&cube, &[true, false]), [8.0, 13.0, (2.0 * 0.5 + 6.0 * 1.5) / 8.0]);
     }
 }

@@ -3,7 +3,8 @@
 //!
 //! * [`translate`]: our scene in its words, or the reason why not.
 //! * [`driver`]: its process; a small Python script renders what is asked for.
-//! * [`contest`]: both programs in turn at equal CPU seconds, against one reference.
+//! * [`contest`]: both programs in turn at equal CPU seconds, against one reference; [`agreement`]:
+//!   whether they render the same.
 //! * [`faults`]: what it is known to get wrong on a scene; [`report`]: tables.
 //!
 //! Conventions are brought together before numbers are compared. The same there and here: world +x is
@@ -12,6 +13,7 @@
 //! ([`translate`]), and energy outside the window, which its cube drops (its steady image has it). That they
 //! agree is measured in every contest: total of the window, of the steady image, mean arrival.
 
+pub mod agreement;
 pub mod contest;
 pub mod driver;
 pub mod faults;

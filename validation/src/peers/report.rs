@@ -1,7 +1,8 @@
 //! What a contest says to people: a table each for error and for agreement, in Markdown.
 
 use super::NAME;
-use super::contest::{AGREEMENT, Agreement, Contest, Row};
+use super::agreement::{AGREEMENT, Agreement};
+use super::contest::{Contest, Row};
 use crate::statistics::split::Estimate;
 
 impl Contest {
@@ -62,7 +63,6 @@ fn row(row: &Row) -> String {
         row.less.map(|r| times(r.ratio, [r.low, r.high])),
         row.less_median.map(|(ratio, interval)| times(ratio, interval)),
     ];
-    let none = || "".to_owned();
     format!(
         "| {} | {} | {cpu:.2} | {} | {:.2e} | {} | {:.2e} | {} | {} |",
         row.method,
@@ -71,8 +71,8 @@ fn row(row: &Row) -> String {
         row.median,
         interval(&row.split.squared_bias),
         row.whole.value,
-        means.unwrap_or_else(none),
-        medians.unwrap_or_else(none),
+        means.unwrap_or_default(),
+        medians.unwrap_or_default(),
     )
 }
 

@@ -251,9 +251,8 @@ impl Translator<'_> {
             };
             let translated = match rule {
                 Same => value.clone(),
-                Colour => colour(value, &place)?,
                 Texture if rgb_of(value).is_none() => self.plugin(value, &place)?,
-                Texture => colour(value, &place)?,
+                Colour | Texture => colour(value, &place)?,
                 Transform => transform(value, &place)?,
                 File => json!(self.directory.join(value.as_str().unwrap_or_default())),
                 Plugin => self.plugin(value, &place)?,
