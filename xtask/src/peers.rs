@@ -114,16 +114,13 @@ pub(crate) fn run(args: &PeersArgs) -> Outcome {
             })??),
             Err(refusal) => say(&format!("{name}: refused, {refusal}")),
         }
+        // What is finished is kept, whatever becomes of the next scene.
+        fs::write(out.join("peers.json"), serde_json::to_string_pretty(&contests)? + "\n")?;
+        fs::write(out.join("peers.md"), page(&contests))?;
     }
-    if contests.is_empty() {
-        return Ok(false);
-    }
-    let page = page(&contests);
-    for line in page.lines() {
+    for line in page(&contests).lines() {
         say(line);
     }
-    fs::write(out.join("peers.json"), serde_json::to_string_pretty(&contests)? + "\n")?;
-    fs::write(out.join("peers.md"), page)?;
     say(&format!("wrote {}", out.display()));
     Ok(contests.len() == names.len())
 }

@@ -7,8 +7,8 @@
 //! [`ContestPlan::samples`] samples per pixel.
 //!
 //! CPU seconds are measured again in each replicate, and "times less error" compares NMSE · CPU
-//! seconds, as [`crate::equal_time`] does: as a ratio of means by the delta method, and, for methods with
-//! fireflies, as a ratio of medians with a bootstrap interval. Ours include the method's preparation; the
+//! seconds: as a ratio of means by Fieller's theorem, whose interval holds the reference's noise, and, for
+//! methods with fireflies, as a ratio of medians with a bootstrap interval, given the reference. Ours include the method's preparation; the
 //! peer's leave out its start, compilation and tracing, in its favour.
 
 use serde::{Deserialize, Serialize};
@@ -27,8 +27,9 @@ use crate::measure::{Estimator, layout};
 use crate::reference_cube::ReferenceCube;
 use crate::run_time::measure::{Run, Seconds, Snapshot, curve, residuals};
 use crate::run_time::{CONFIDENCE, ErrorAgainstTime};
+use crate::statistics::batches::summarise;
 use crate::statistics::split::Estimate;
-use crate::statistics::{Gram, RatioInterval, Split, bootstrap, ratio_of_means};
+use crate::statistics::{Factor, Gram, Split, bootstrap};
 use crate::suite::Circumstances;
 
 /// A run is observed after these parts of its passes.
@@ -98,8 +99,8 @@ pub struct Row {
     /// NMSE of the whole cube.
     pub whole: Estimate,
     /// (NMSE · CPU s of the peer)/(that of this one), means; not for the peer.
-    pub less: Option<RatioInterval>,
-    /// The same of medians, with its bootstrap interval.
+    pub less: Option<Factor>,
+    /// The same of medians over replicates, with its bootstrap interval.
     pub less_median: Option<(f64, [f64; 2])>,
 }
 
@@ -262,11 +263,9 @@ impl ContestPlan<'_> {
         for (name, runs) in names.iter().zip(&mut ended) {
             rows.push(self.row(name, runs)?);
         }
-        let work: Vec<Vec<f64>> = rows.iter().map(Row::work).collect();
-        let (last, ours) = work.split_last().unwrap_or((&work[0], &[]));
-        for (row, work) in rows.iter_mut().zip(ours) {
-            row.less = ratio_of_means(last, work, CONFIDENCE);
-            row.less_median = Some(bootstrap::ratio_of_medians(last, work, CONFIDENCE));
+        let (ours, last) = rows.split_at_mut(self.ours.len());
+        for row in ours {
+            row.compare(&last[0]);
         }
         let unbiased = |name: &&str| *name == self.reference.provenance.method;
         let of = |at: usize| ended[at].iter().map(|e| e.totals).collect::<Vec<_>>();
@@ -331,6 +330,16 @@ impl ContestPlan<'_> {
 }
 
 impl Row {
+    /// How many times less error · CPU seconds this one has.
+    fn compare(&mut self, peer: &Self) {
+        let freedom = self.cpu_seconds.len() as f64 - 1.0;
+        let factor = Factor::of(&peer.split.nmse, &self.split.nmse, freedom, CONFIDENCE);
+        let seconds = summarise(&peer.cpu_seconds).mean / summarise(&self.cpu_seconds).mean;
+        self.less = factor.map(|factor| factor.scaled(seconds));
+        let medians = bootstrap::ratio_of_medians(&peer.work(), &self.work(), CONFIDENCE);
+        self.less_median = Some(medians);
+    }
+
     /// NMSE · CPU seconds of each replicate.
     fn work(&self) -> Vec<f64> {
         self.split.replicates.iter().zip(&self.cpu_seconds).map(|(nmse, cpu)| nmse * cpu).collect()

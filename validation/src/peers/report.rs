@@ -60,7 +60,7 @@ fn plain(value: &serde_json::Value) -> String {
 fn row(row: &Row) -> String {
     let cpu = row.cpu_seconds.iter().sum::<f64>() / row.cpu_seconds.len() as f64;
     let [means, medians] = [
-        row.less.map(|r| times(r.ratio, [r.low, r.high])),
+        row.less.map(|factor| factor.text()),
         row.less_median.map(|(ratio, interval)| times(ratio, interval)),
     ];
     format!(
