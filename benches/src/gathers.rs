@@ -11,6 +11,7 @@ use tpb_beams::sight::Sights;
 use tpb_beams::splat::{Splat, TileRays};
 use tpb_beams::{BeamLength, Temporal};
 use tpb_film::{Grain, TransientFilm};
+use tpb_lanes::Instructions;
 use tpb_render::PassId;
 use tpb_scene::{MediumId, Plan, Scene};
 
@@ -62,6 +63,7 @@ impl Gathers {
                 rays: &rays,
                 temporal: Temporal::Exact,
                 share: 1.0,
+                instructions: Instructions::widest(),
             };
             splat.draw(|_| true, tile)
         });

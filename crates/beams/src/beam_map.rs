@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
-use tpb_lanes::{Simd, WithSimd, dispatch};
+use tpb_lanes::{Instructions, Simd, WithSimd};
 use tpb_scene::MediumId;
 
 use crate::beam::{Beam, CameraRay};
@@ -25,6 +25,7 @@ pub struct BeamMap<'a, const C: usize> {
     blocks: Vec<BeamBlock>,
     /// The kernel's reach in the frame.
     radius: f32,
+    instructions: Instructions,
 }
 
 /// Pairs that a query tested and accepted.
@@ -53,7 +54,14 @@ impl<'a, const C: usize> BeamMap<'a, C> {
             .enumerate()
             .map(|(number, chunk)| BeamBlock::new(&frame, chunk, number * BLOCK))
             .collect();
-        Self { beams, frame, blocks, radius: frame.radius(kernel.radius()) }
+        let (radius, instructions) = (frame.radius(kernel.radius()), Instructions::widest());
+        Self { beams, frame, blocks, radius, instructions }
+    }
+
+    /// With these vector instructions instead of the widest: the same bits.
+    #[must_use]
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { instructions, ..self }
     }
 
     /// Shows `found` every beam that the kernel joins to a ray, with the number of the ray: for each ray
@@ -65,7 +73,7 @@ impl<'a, const C: usize> BeamMap<'a, C> {
         found: impl FnMut(usize, &Beam<C>, &K::Meeting),
     ) -> Pairs {
         let lines: Vec<_> = rays.iter().map(|(_, ray)| self.frame.line(ray)).collect();
-        dispatch(Query {
+        self.instructions.dispatch(Query {
             map: self,
             kernel,
             rays,

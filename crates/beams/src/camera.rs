@@ -23,6 +23,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 use tpb_film::{Arrival, Ledger, Tile};
+use tpb_lanes::Instructions;
 use tpb_optics::{Spectrum, Stream};
 use tpb_render::PassId;
 use tpb_scene::{Flight, Hit, IntegratorSpec, Plan, Scene, Vertex};
@@ -63,6 +64,8 @@ pub(crate) struct Camera<'a, const C: usize, K> {
     pub(crate) turned: Option<&'a BeamMap<'a, C>>,
     pub(crate) photons: &'a SurfaceMap<C>,
     pub(crate) kernel: K,
+    /// For the gather.
+    pub(crate) instructions: Instructions,
 }
 
 /// A camera path under way.
@@ -144,6 +147,7 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             rays: &rays,
             temporal: self.settings.temporal,
             share,
+            instructions: self.instructions,
         };
         splat.draw(|depth| self.integrator.counts(depth), tile)
     }

@@ -1,6 +1,7 @@
 //! The method: one pass traces photons, sorts what they left, and gathers it pixel by pixel.
 
 use tpb_film::{Grain, TransientFilm};
+use tpb_lanes::Instructions;
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Plan, Scene};
 
@@ -22,6 +23,7 @@ pub struct PhotonBeams<'a> {
     plan: &'a Plan,
     integrator: IntegratorSpec,
     settings: Settings,
+    instructions: Instructions,
 }
 
 impl<'a> PhotonBeams<'a> {
@@ -36,7 +38,13 @@ impl<'a> PhotonBeams<'a> {
         options: &BeamOptions,
     ) -> Result<Self, OptionError> {
         let settings = Settings::new(scene, plan, options)?;
-        Ok(Self { scene, plan, integrator, settings })
+        Ok(Self { scene, plan, integrator, settings, instructions: Instructions::widest() })
+    }
+
+    /// With these vector instructions instead of the widest that the machine has: the same bits.
+    #[must_use]
+    pub fn with_instructions(self, instructions: Instructions) -> Self {
+        Self { instructions, ..self }
     }
 
     /// All options, defaults filled in.
@@ -53,14 +61,13 @@ impl<'a> PhotonBeams<'a> {
         beams: &[Beam<C>],
         photons: &SurfaceMap<C>,
     ) -> Pairs {
-        let Self { scene, plan, integrator, settings } = self;
-        let integrator = *integrator;
+        let &Self { scene, plan, integrator, ref settings, instructions } = self;
         let radius = kernel.radius();
         let rows = (scene.film.height, film.tile_edge(Grain::Coarse));
         let sights = &Sights::new(&scene.sensor, beams, radius, rows);
         let turning = [&plan.refracting, &plan.mirrors, &plan.rough];
         let turned = turning.iter().any(|shapes| !shapes.is_empty());
-        let turned = turned.then(|| BeamMap::new(kernel, beams));
+        let turned = turned.then(|| BeamMap::new(kernel, beams).with_instructions(instructions));
         let camera = Camera {
             scene,
             plan,
@@ -71,6 +78,7 @@ impl<'a> PhotonBeams<'a> {
             turned: turned.as_ref(),
             photons,
             kernel,
+            instructions,
         };
         let found = film.add_pass_by(Grain::Coarse, |tile| camera.render(id, tile));
         let mut pairs = Pairs::default();
@@ -91,7 +99,7 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
     }
 
     fn pass(&self, id: PassId, film: &mut TransientFilm<C>) -> PassReport {
-        let Self { scene, plan, integrator, settings } = self;
+        let Self { scene, plan, integrator, settings, .. } = self;
         let (radius, surface_radius) = settings.radii(id.index);
         let Settings { photons_per_pass, beam_photons, .. } = *settings;
         let tracer = PhotonTracer { scene, plan, integrator: *integrator, length: settings.length };

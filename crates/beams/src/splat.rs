@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 use tpb_film::Tile;
-use tpb_lanes::{Simd, WithSimd, dispatch};
+use tpb_lanes::{Instructions, Simd, WithSimd};
 use tpb_optics::{Coefficients, Phase};
 use tpb_scene::{Flight, MediumId, Scene};
 
@@ -210,12 +210,14 @@ pub struct Splat<'a, const C: usize, K> {
     pub temporal: Temporal,
     /// What they are multiplied by.
     pub share: f64,
+    /// The vector instructions that it is done with; bits do not depend on them.
+    pub instructions: Instructions,
 }
 
 impl<const C: usize, K: RayBeamKernel> Splat<'_, C, K> {
     /// Draws them. `counts` says whether light paths of some depth count.
     pub fn draw(&self, counts: impl Fn(u32) -> bool, tile: &mut Tile<'_, C>) -> Pairs {
-        dispatch(Work(self, counts, tile))
+        self.instructions.dispatch(Work(self, counts, tile))
     }
 
     #[inline(always)]
@@ -225,7 +227,7 @@ impl<const C: usize, K: RayBeamKernel> Splat<'_, C, K> {
         counts: impl Fn(u32) -> bool,
         tile: &mut Tile<'_, C>,
     ) -> Pairs {
-        let &Self { kernel, beams, sights, rays, temporal, share } = self;
+        let &Self { kernel, beams, sights, rays, temporal, share, .. } = self;
         let lattice = &rays.lattice;
         let radius = kernel.radius() * (1.0 + 1e-9);
         let mut found = vec![Knot::default(); lattice.room()];

@@ -49,7 +49,10 @@ impl<const C: usize> Tile<'_, C> {
     pub fn deposit_instants<S: Simd>(&mut self, simd: S, instants: &Instants<C>) {
         let Instants { places, unwarp_opl, opl, energy } = instants;
         let Some(clock) = self.small_clock() else {
-            return self.deposit_one_by_one(instants);
+            if !self.add_to_steady(simd, places, energy) {
+                self.deposit_one_by_one(instants);
+            }
+            return;
         };
         let (mut cells, mut unsound) = ([0.0; LANES], F64s::splat(simd, 0.0));
         for index in 0..vectors::<S>() {
@@ -90,7 +93,10 @@ impl<const C: usize> Tile<'_, C> {
     #[inline(always)]
     pub fn deposit_exponentials<S: Simd>(&mut self, simd: S, given: &Exponentials<C>) {
         let Some(clock) = self.small_clock() else {
-            return self.profiles_one_by_one(given, [true; LANES]);
+            if !self.add_to_steady(simd, &given.places, &given.energy) {
+                self.profiles_one_by_one(given, [true; LANES]);
+            }
+            return;
         };
         let (mut first, mut beyond) = ([0.0; LANES], [0.0; LANES]);
         // What goes to the first cell, and what to the next.
@@ -150,6 +156,28 @@ impl<const C: usize> Tile<'_, C> {
             }
             self.add(&integers(&first), &next);
         }
+    }
+
+    /// Adds energies to pixels, where the film keeps no times and all energies are finite; whether it did.
+    #[inline(always)]
+    fn add_to_steady<S: Simd>(
+        &mut self,
+        simd: S,
+        places: &[f64; LANES],
+        energy: &[[f64; LANES]; C],
+    ) -> bool {
+        let mut unsound = F64s::splat(simd, 0.0);
+        for index in 0..vectors::<S>() {
+            for energy in energy {
+                unsound = unsound + energy.vector(simd, index) * 0.0;
+            }
+        }
+        let sound = !unsound.sum().is_nan();
+        let fits = self.clock.is_none() && u32::try_from(self.cells.len()).is_ok() && sound;
+        if fits {
+            self.add(&integers(places), energy);
+        }
+        fits
     }
 
     /// Adds energies to cells.

@@ -8,9 +8,11 @@
 mod decay;
 mod f32s;
 mod f64s;
+mod instructions;
 
 pub use f32s::{F32s, Mask32};
 pub use f64s::{F64s, Mask, integers};
+pub use instructions::Instructions;
 pub use pulp::{Scalar, Simd, WithSimd};
 
 /// Values that are worked on together: as many as the widest vectors hold, or more.
@@ -23,7 +25,7 @@ pub const fn vectors<S: Simd>() -> usize {
 
 /// Runs `work` with the widest vector instructions that the machine has.
 pub fn dispatch<W: WithSimd>(work: W) -> W::Output {
-    pulp::Arch::new().dispatch(work)
+    Instructions::widest().dispatch(work)
 }
 
 /// Numbers that can be read as vectors.

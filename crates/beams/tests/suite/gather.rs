@@ -212,6 +212,7 @@ fn check_splat<K: RayBeamKernel>(
             rays: &rays,
             temporal: Temporal::Exact,
             share: 1.0,
+            instructions: tpb_lanes::Instructions::widest(),
         };
         let pairs = splat.draw(|_| true, tile);
         (tile.pixels().collect::<Vec<_>>(), flights, pairs)

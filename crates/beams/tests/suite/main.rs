@@ -3,6 +3,7 @@
 mod defaults;
 mod fog;
 mod gather;
+mod instructions;
 mod kernel3d;
 mod kernels;
 mod scenes;

@@ -3,9 +3,9 @@
 use proptest::prelude::*;
 use tpb_film::{
     Arrays, Arrival, Exponentials, FilmOptions, Grain, Instants, Layout, TemporalProfile, Tile,
-    TransientFilm,
+    TimeAxis, TransientFilm,
 };
-use tpb_lanes::{LANES, Simd, WithSimd, dispatch};
+use tpb_lanes::{Instructions, LANES, Simd, WithSimd, dispatch};
 use tpb_optics::Spectrum;
 
 use super::{AXIS, worst};
@@ -60,13 +60,21 @@ impl<const C: usize> Group<C> {
     }
 }
 
-/// A film with a group deposited in its first tile; and how many were not finite.
-fn film<const C: usize>(group: &Group<C>, options: FilmOptions, at_once: bool) -> (Arrays, u64) {
-    let layout = Layout::new(64, 64, AXIS).unwrap();
+/// A film with a group deposited in its first tile, at once or one by one; and how many were not
+/// finite.
+fn film<const C: usize>(
+    group: &Group<C>,
+    (axis, options): (Option<TimeAxis>, FilmOptions),
+    at_once: Option<Instructions>,
+) -> (Arrays, u64) {
+    let layout = Layout::new(64, 64, axis).unwrap();
     let mut film = TransientFilm::<C>::new(layout, options).unwrap();
     let refused = film.add_pass_by(Grain::Coarse, |tile| {
         if tile.pixels().next() == Some(0) {
-            if at_once { dispatch(AtOnce(group, tile)) } else { group.one_by_one(tile) }
+            match at_once {
+                Some(instructions) => instructions.dispatch(AtOnce(group, tile)),
+                None => group.one_by_one(tile),
+            }
         }
         tile.non_finite()
     });
@@ -102,12 +110,15 @@ proptest! {
     fn instants(
         places in lanes((0..64_u32).prop_map(f64::from)), opl in lanes(time()),
         unwarp_opl in lanes(0.0..2.0_f64), red in lanes(0.0..1.0_f64), blue in lanes(-1.0..1.0_f64),
-        unwarp: bool,
+        unwarp: bool, bins: bool,
     ) {
         let group = Group::Instants(Instants { places, unwarp_opl, opl, energy: [red, red, blue] });
         let options = FilmOptions { unwarp, ..FilmOptions::default() };
-        let ((a, _), (b, _)) = (film(&group, options, true), film(&group, options, false));
-        prop_assert!(a == b, "to the bit");
+        let kind = (AXIS.filter(|_| bins), options);
+        let expected = film(&group, kind, None);
+        for instructions in Instructions::available() {
+            prop_assert!(film(&group, kind, Some(instructions)) == expected, "{instructions}");
+        }
     }
 
     #[test]
@@ -115,14 +126,19 @@ proptest! {
         places in lanes((0..64_u32).prop_map(f64::from)), start in lanes(0.0..9.0_f64),
         length in lanes(prop_oneof![Just(0.0), 1e-9..0.1_f64, 0.1..5.0_f64]),
         depth in lanes(prop_oneof![Just(0.0), 1e-12..0.1_f64, 0.1..50.0_f64]),
-        unwarp_opl in lanes(0.0..2.0_f64), energy in lanes(0.1..1.0_f64), unwarp: bool,
+        unwarp_opl in lanes(0.0..2.0_f64), energy in lanes(0.1..1.0_f64), unwarp: bool, bins: bool,
     ) {
         let end = std::array::from_fn(|lane| start[lane] + length[lane]);
         let arrivals =
             Exponentials { places, unwarp_opl, start, end, depth: [depth], energy: [energy] };
         let options = FilmOptions { unwarp, ..FilmOptions::default() };
+        let kind = (AXIS.filter(|_| bins), options);
         let group = Group::Exponentials(arrivals);
-        let ((a, _), (b, _)) = (film(&group, options, true), film(&group, options, false));
+        let (a, _) = film(&group, kind, Some(Instructions::Scalar));
+        for instructions in Instructions::available() {
+            prop_assert!(film(&group, kind, Some(instructions)).0 == a, "{instructions}");
+        }
+        let (b, _) = film(&group, kind, None);
         // Bins are written as f32.
         prop_assert!(difference(&a, &b) < 2e-7, "{}", difference(&a, &b));
         let energy: f64 = energy.iter().sum();
@@ -142,9 +158,14 @@ fn what_is_not_finite_is_kept_out_and_counted() {
     let arrivals =
         Exponentials { places, unwarp_opl, start: fine, end: opl, depth, energy: [energy] };
     for group in [instants, Group::Exponentials(arrivals)] {
-        let (arrays, refused) = film(&group, FilmOptions::default(), true);
-        assert_eq!(refused, 3);
-        assert_eq!(arrays.steady.iter().sum::<f64>(), LANES as f64 - 3.0);
+        for instructions in Instructions::available() {
+            let of = |axis| film(&group, (axis, FilmOptions::default()), Some(instructions));
+            let (arrays, refused) = of(AXIS);
+            assert_eq!((refused, arrays.steady.iter().sum::<f64>()), (3, LANES as f64 - 3.0));
+            // A film without bins does not look at times.
+            let (arrays, refused) = of(None);
+            assert_eq!((refused, arrays.steady.iter().sum::<f64>()), (1, LANES as f64 - 1.0));
+        }
     }
 }
 
