@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use tpb_dashboard::bench_runs::BenchRun;
 use tpb_dashboard::benchmarks::{self, Benchmark, CommitBy};
 use tpb_dashboard::{DashboardReport, Shelf, Sources, lines};
 use tpb_validation::history;
 
+use crate::bench;
 use crate::circumstances::{commit, commit_before, machine};
 use crate::validate::HISTORY;
 use crate::workspace::{Outcome, root, say};
@@ -19,8 +21,8 @@ folder is whole by itself: pages of other commands are copied into it.
 
   experiments          target/validation/history.jsonl, validation/history.jsonl
   error against time   target/error-time/*.json
-  benchmarks           target/criterion, collected into target/benchmarks/history.jsonl;
-                       benches/history.jsonl
+  benchmarks           target/bench/history.jsonl, benches/history.jsonl; target/criterion,
+                       collected into target/benchmarks/history.jsonl
   comparisons          target/reproduce, target/gallery
 
 The formats of the lines are documented in the crate tpb-dashboard.")]
@@ -28,9 +30,6 @@ pub(crate) struct DashboardArgs {
     /// Open the page in a browser
     #[arg(long)]
     open: bool,
-    /// Also keep new benchmarks in benches/history.jsonl, which is under version control
-    #[arg(long)]
-    record: bool,
     /// Folder in which other tasks left their results [default: target]
     #[arg(long, value_name = "DIR")]
     from: Option<PathBuf>,
@@ -42,12 +41,9 @@ pub(crate) struct DashboardArgs {
 /// Collects, writes and, if asked for, opens the page.
 pub(crate) fn run(args: &DashboardArgs) -> Outcome {
     let from = args.from.clone().unwrap_or_else(|| root().join("target"));
-    let kept = root().join("benches").join(HISTORY);
+    let runs = bench::histories(&from);
     let collected = from.join("benchmarks").join(HISTORY);
-    collect(&from.join("criterion"), &collected)?;
-    if args.record {
-        collect(&from.join("criterion"), &kept)?;
-    }
+    collect(&from.join("criterion"), &collected, &runs)?;
     let report = tpb_dashboard::write(&Sources {
         commit: commit(),
         machine: machine(None),
@@ -57,7 +53,8 @@ pub(crate) fn run(args: &DashboardArgs) -> Outcome {
             from.join("validation").join(HISTORY),
             root().join("validation").join(HISTORY),
         ],
-        benchmarks: vec![collected, kept],
+        benchmarks: vec![collected],
+        bench_runs: runs.to_vec(),
         error_time: from.join("error-time"),
         shelves: shelves(&from),
         out: args.out.clone().unwrap_or_else(|| from.join("dashboard")),
@@ -72,9 +69,17 @@ pub(crate) fn run(args: &DashboardArgs) -> Outcome {
     Ok(true)
 }
 
-/// Adds what Criterion.rs left, and a history does not have yet, to it.
-fn collect(criterion: &Path, history: &Path) -> Result<(), Box<dyn std::error::Error>> {
-    let known: Vec<Benchmark> = lines::read(history)?.values;
+/// Adds what Criterion.rs left, and neither a history nor `runs` have yet, to the history.
+fn collect(
+    criterion: &Path,
+    history: &Path,
+    runs: &[PathBuf],
+) -> Result<(), Box<dyn std::error::Error>> {
+    let mut known: Vec<Benchmark> = lines::read(history)?.values;
+    for file in runs {
+        let runs: Vec<BenchRun> = lines::read(file)?.values;
+        known.extend(runs.into_iter().flat_map(|run| run.benchmarks));
+    }
     let commit =
         |time| (commit_before(time).unwrap_or_else(|| "unknown".to_owned()), CommitBy::Time);
     let found = benchmarks::collect(criterion, &known, &machine(None), commit)?;

@@ -5,6 +5,7 @@
 //! | rustfmt, clippy | `cargo xtask test` |
 //! | Chromium | tests of pages |
 //! | git | commits in reports and histories; without it they are "unknown" |
+//! | Valgrind | instructions in `cargo xtask bench` |
 //! | FFmpeg | videos as MP4 and WebM; APNG and GIF need nothing |
 //!
 //! Rust itself runs this task, so it is there; `rust-version` of `Cargo.toml` guards its age.
@@ -69,6 +70,13 @@ pub(crate) fn run() -> Outcome {
             found: version("git", &["--version"]),
             purpose: "commits in reports and histories",
             install: "apt-get install git; brew install git",
+            needed: false,
+        },
+        Tool {
+            name: "valgrind",
+            found: version("valgrind", &["--version"]),
+            purpose: "instructions in cargo xtask bench",
+            install: "apt-get install valgrind",
             needed: false,
         },
         Tool {

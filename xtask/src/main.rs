@@ -1,5 +1,6 @@
 //! Project tasks: parse, call, print. `cargo xtask` alone lists them.
 
+mod bench;
 mod circumstances;
 mod dashboard;
 mod doctor;
@@ -44,6 +45,8 @@ enum Task {
     },
     /// Measures the error of each method against run time: tables, JSON, charts.
     ErrorTime(error_time::ErrorTimeArgs),
+    /// Times and counts the renderers' work, and compares with the last run: table, history.
+    Bench(bench::BenchArgs),
     /// Renders the scenes of `scenes/` onto one page, or compares the methods on them.
     Gallery(gallery::GalleryArgs),
     /// Writes the meshes and images of the gallery's scenes.
@@ -75,6 +78,7 @@ fn main() -> ExitCode {
         Task::Test => gate::run(),
         Task::Tables { dir } => tables::run(dir),
         Task::ErrorTime(args) => error_time::run(&args),
+        Task::Bench(args) => bench::run(&args),
         Task::Gallery(args) => gallery::run(&args),
         Task::Meshes => meshes::run(),
         Task::Dashboard(args) => dashboard::run(&args),

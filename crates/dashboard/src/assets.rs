@@ -8,7 +8,7 @@ pub(crate) const STYLES: [&str; 2] =
     [include_str!("../assets/css/layout.css"), include_str!("../assets/css/overview.css")];
 
 /// Scripts.
-pub(crate) const SCRIPTS: [&str; 11] = [
+pub(crate) const SCRIPTS: [&str; 12] = [
     include_str!("../assets/js/text.js"),
     include_str!("../assets/js/plot.js"),
     include_str!("../assets/js/rows.js"),
@@ -17,6 +17,7 @@ pub(crate) const SCRIPTS: [&str; 11] = [
     include_str!("../assets/js/factors.js"),
     include_str!("../assets/js/curves.js"),
     include_str!("../assets/js/benchmarks.js"),
+    include_str!("../assets/js/bench-runs.js"),
     include_str!("../assets/js/shelves.js"),
     include_str!("../assets/js/keys.js"),
     include_str!("../assets/js/main.js"),

@@ -143,6 +143,16 @@ impl Cost {
     }
 }
 
+/// Units of work, the most telling first.
+const UNITS: [&str; 5] = ["pairs", "segments", "connections", "paths", "photons"];
+
+impl Case {
+    /// The most telling of its rates: the unit, and how many per CPU second.
+    pub fn main_rate(&self) -> Option<(&'static str, f64)> {
+        UNITS.iter().find_map(|&unit| Some((unit, *self.rates.get(unit)?)))
+    }
+}
+
 /// How a case differs from the last run that may be compared with it: new over old.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Change {
@@ -246,7 +256,11 @@ mod tests {
             BenchRun { build: "debug".into(), ..run(4, "m", vec![case("b", 9.0, None)]) },
             BenchRun { features: vec!["avx2".into()], ..run(5, "m", vec![case("b", 9.0, None)]) },
         ];
-        let now = run(6, "m", vec![case("a", 3.0, Some(1100.0)), case("b", 0.5, None), case("c", 1.0, None)]);
+        let now = run(
+            6,
+            "m",
+            vec![case("a", 3.0, Some(1100.0)), case("b", 0.5, None), case("c", 1.0, None)],
+        );
         let found = changes(&now, &earlier);
         let a = found[0].as_ref().unwrap();
         // Timed last in run 2, counted last in run 1.

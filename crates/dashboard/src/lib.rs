@@ -10,7 +10,9 @@
 //! | [`lines`] | files of one JSON object per line that grow at their end |
 //! | [`history`] | the format of the validation suite's runs |
 //! | [`benchmarks`] | the format of benchmarks; what Criterion.rs left as lines of it |
+//! | [`bench_runs`] | the format of runs of all benchmarks, and how they are compared |
 //! | [`curves`] | errors against run time |
+//! | `bench_rows` | cases of runs, each with its change |
 //! | `overview` | every experiment with its latest result and its history |
 //! | `shelves` | pages of other commands |
 //! | `copies` | their copies |
@@ -23,6 +25,8 @@
 //! Not handled: watching files; several workspaces on one page.
 
 mod assets;
+mod bench_rows;
+pub mod bench_runs;
 pub mod benchmarks;
 mod copies;
 pub mod curves;

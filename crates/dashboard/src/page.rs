@@ -11,6 +11,8 @@ use tpb_film::atomic_write;
 use tpb_page::{Document, document, json_element};
 
 use crate::assets::{PAGE, SCRIPTS, STYLES};
+use crate::bench_rows::BenchRuns;
+use crate::bench_runs::{self, BenchRun};
 use crate::benchmarks::{self, Benchmark, seconds};
 use crate::copies::Copies;
 use crate::curves::{self, Scenes};
@@ -34,6 +36,8 @@ pub struct Sources {
     pub histories: Vec<PathBuf>,
     /// Files of [`Benchmark`] lines.
     pub benchmarks: Vec<PathBuf>,
+    /// Files of [`BenchRun`] lines.
+    pub bench_runs: Vec<PathBuf>,
     /// Folder of errors against run time.
     pub error_time: PathBuf,
     /// Where other commands leave their pages.
@@ -53,7 +57,7 @@ pub struct DashboardReport {
     pub experiments: [usize; 3],
     /// Scenes with errors against run time.
     pub scenes: usize,
-    /// Benchmarks.
+    /// Benchmarks: Criterion's, and cases of runs.
     pub benchmarks: usize,
     /// Pages that are linked.
     pub linked: usize,
@@ -75,6 +79,7 @@ struct Data<'a> {
     pictures: BTreeMap<String, Vec<(String, String)>>,
     error_time: Scenes,
     benchmarks: Vec<Benchmark>,
+    bench_runs: BenchRuns,
     shelves: Vec<Filled>,
     remarks: Vec<String>,
 }
@@ -111,7 +116,10 @@ pub fn write(sources: &Sources) -> Result<DashboardReport, DashboardError> {
 fn gather<'a>(sources: &'a Sources, copies: &mut Copies) -> Result<Data<'a>, DashboardError> {
     let mut remarks = Vec::new();
     let runs: Vec<Run> = history::merge(all(&sources.histories, &mut remarks)?);
-    let benchmarks = benchmarks::merge(all::<Benchmark>(&sources.benchmarks, &mut remarks)?);
+    let bench_runs = bench_runs::merge(all::<BenchRun>(&sources.bench_runs, &mut remarks)?);
+    let of_runs = bench_runs.iter().flat_map(|run| run.benchmarks.iter().cloned());
+    let benchmarks = all::<Benchmark>(&sources.benchmarks, &mut remarks)?;
+    let benchmarks = benchmarks::merge(benchmarks.into_iter().chain(of_runs));
     let overview = Overview::new(&sources.plan, &runs);
     let pictures = pictures(&overview.rows, &sources.root);
     let error_time = curves::read(&sources.error_time)?;
@@ -128,6 +136,7 @@ fn gather<'a>(sources: &'a Sources, copies: &mut Copies) -> Result<Data<'a>, Das
         pictures,
         error_time,
         benchmarks,
+        bench_runs: BenchRuns::new(&bench_runs),
         shelves,
         remarks,
     })
@@ -191,7 +200,7 @@ fn report(data: &Data<'_>, page: PathBuf, bytes: usize, copied: u64) -> Dashboar
         bytes,
         experiments,
         scenes: data.error_time.scenes.len(),
-        benchmarks: names.len(),
+        benchmarks: names.len() + data.bench_runs.cases(),
         linked: data.shelves.iter().map(|shelf| shelf.pages.len()).sum(),
         copied,
         remarks: data.remarks.clone(),

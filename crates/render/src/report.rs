@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use tpb_film::{Arrays, Ledger, Pulse, PulseReport, Quantity};
+use tpb_lanes::Instructions;
 use tpb_scene::{IntegratorSpec, Plan};
 
 use crate::{RenderOptions, RunSummary};
@@ -16,6 +17,10 @@ const LEDGER_TOLERANCE: f64 = 1e-9;
 pub struct Report {
     /// The program and its version.
     pub program: String,
+    /// The widest vector instructions that the machine had: photon beams use them. Bits do not
+    /// depend on them.
+    #[serde(default)]
+    pub vectors: String,
     /// What was rendered.
     pub scene: SceneRecord,
     /// How.
@@ -162,6 +167,7 @@ impl Report {
         let ledger_closure = closure(&run.ledger.mean_of_a_pass);
         let mut report = Self {
             program: program.to_owned(),
+            vectors: Instructions::widest().name().to_owned(),
             scene,
             method,
             options,
@@ -243,6 +249,7 @@ mod tests {
         };
         Report {
             program: "test".to_owned(),
+            vectors: "scalar".to_owned(),
             scene: SceneRecord::default(),
             method: MethodRecord::default(),
             options,

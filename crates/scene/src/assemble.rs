@@ -188,12 +188,12 @@ fn media_indices(parts: &SceneParts) -> Result<Vec<f64>, AssembleError> {
     for shape in &parts.shapes {
         let (Some(d), Some(b)) = (shape.bsdf.interface(), shape.boundary) else { continue };
         for (side, eta) in [(b.interior, d.interior_eta), (b.exterior, d.exterior_eta)] {
-            let Some(MediumId(id)) = side else { continue };
+            let Some(id) = side.map(MediumId::index) else { continue };
             let source = format!("shape '{}'", shape.name);
-            match &found[id as usize] {
+            match &found[id] {
                 Some((first, first_source)) if *first != eta => {
                     return Err(AssembleError::MediumIndex {
-                        medium: parts.media[id as usize].name.clone(),
+                        medium: parts.media[id].name.clone(),
                         first: *first,
                         first_source: first_source.clone(),
                         second: eta,
@@ -201,7 +201,7 @@ fn media_indices(parts: &SceneParts) -> Result<Vec<f64>, AssembleError> {
                     });
                 }
                 Some(_) => {}
-                None => found[id as usize] = Some((eta, source)),
+                None => found[id] = Some((eta, source)),
             }
         }
     }
@@ -234,7 +234,7 @@ fn lay_out(parts: SceneParts, media_eta: &[f64]) -> Scene {
     let mut shapes = Vec::new();
     let background = Region {
         medium: parts.background,
-        eta: parts.background.map_or(1.0, |id| media_eta[id.0 as usize]),
+        eta: parts.background.map_or(1.0, |id| media_eta[id.index()]),
     };
     let mut emitters: Vec<_> = parts
         .emitters
@@ -307,7 +307,7 @@ fn check_null_boundaries(scene: &Scene, media_eta: &[f64]) -> Result<(), Assembl
     for shape in scene.shapes.iter().filter(|shape| shape.bsdf.keeps_index()) {
         let Some(b) = shape.boundary else { continue };
         let (Some(i), Some(e)) = (b.interior, b.exterior) else { continue };
-        let (interior, exterior) = (media_eta[i.0 as usize], media_eta[e.0 as usize]);
+        let (interior, exterior) = (media_eta[i.index()], media_eta[e.index()]);
         if interior != exterior {
             return Err(AssembleError::NullBetweenUnequalIndices {
                 shape: shape.name.clone(),

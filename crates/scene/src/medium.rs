@@ -3,8 +3,43 @@
 use tpb_optics::{Coefficients, Phase};
 
 /// Index into [`crate::Scene::media`].
+#[cfg(not(feature = "vacuum"))]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct MediumId(pub u32);
+
+/// What a program without media has instead of an index: there is none. A `None` of it takes no room,
+/// and the compiler leaves out all that a `Some` would lead to.
+#[cfg(feature = "vacuum")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum MediumId {}
+
+impl MediumId {
+    /// Of an index; `None` in a program without media.
+    #[cfg(not(feature = "vacuum"))]
+    pub(crate) fn of_index(index: usize) -> Option<Self> {
+        Some(Self(index as u32))
+    }
+
+    /// Of an index; `None` in a program without media.
+    #[cfg(feature = "vacuum")]
+    pub(crate) fn of_index(_: usize) -> Option<Self> {
+        None
+    }
+
+    /// The index.
+    #[cfg(not(feature = "vacuum"))]
+    #[inline]
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// The index.
+    #[cfg(feature = "vacuum")]
+    #[inline]
+    pub fn index(self) -> usize {
+        match self {}
+    }
+}
 
 /// A homogeneous medium.
 #[derive(Clone, Debug, PartialEq)]

@@ -84,8 +84,8 @@ impl<'a> Probe<'a> {
         if let (Some(b), None) = (boundary, votes.medium) {
             let medium = b.side(front);
             votes.medium = Some((medium, shape));
-            if let Some(MediumId(id)) = medium {
-                votes.eta.get_or_insert((self.media_eta[id as usize], shape));
+            if let Some(id) = medium {
+                votes.eta.get_or_insert((self.media_eta[id.index()], shape));
             }
         }
     }
@@ -127,7 +127,7 @@ impl<'a> Probe<'a> {
     /// No vote means background.
     fn region(&self, votes: &Votes) -> Region {
         let medium = votes.medium.map_or(self.scene.background.medium, |(medium, _)| medium);
-        let own = medium.map_or(self.scene.background.eta, |id| self.media_eta[id.0 as usize]);
+        let own = medium.map_or(self.scene.background.eta, |id| self.media_eta[id.index()]);
         Region { medium, eta: votes.eta.map_or(own, |(eta, _)| eta) }
     }
 
@@ -290,7 +290,7 @@ impl<'a> Probe<'a> {
     fn stated(&self, position: DVec3, medium: MediumId) -> Region {
         let votes = (0..PROBES_PER_PLACE).map(|i| self.votes(position, None, spread(i)));
         let voted = votes.into_iter().find_map(|votes| votes.eta);
-        let eta = voted.map_or(self.media_eta[medium.0 as usize], |(eta, _)| eta);
+        let eta = voted.map_or(self.media_eta[medium.index()], |(eta, _)| eta);
         Region { medium: Some(medium), eta }
     }
 

@@ -73,7 +73,7 @@ impl Scene {
     /// A medium.
     #[inline]
     pub fn medium(&self, id: MediumId) -> &Medium {
-        &self.media[id.0 as usize]
+        &self.media[id.index()]
     }
 
     /// The value of a texture at a hit on its shape.

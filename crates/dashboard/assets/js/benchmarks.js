@@ -90,11 +90,14 @@ function drawBench(card, { name, lines }) {
 function drawBenchmarks(data) {
   if (state.tab !== "benchmarks") return;
   const all = benchmarksOf(data);
-  byId("benchmarks-filter").hidden = all.length === 0;
-  byId("benchmarks-missing").replaceChildren(...(all.length ? [] : [missingCard("No benchmark was measured yet.", COMMANDS.bench)]));
+  const runs = drawBenchRuns(data);
+  const count = all.length + runs.all;
+  byId("benchmarks-filter").hidden = count === 0;
+  byId("criterion-section").hidden = all.length === 0;
+  byId("benchmarks-missing").replaceChildren(...(count ? [] : [missingCard("No benchmark was measured yet.", COMMANDS.bench)]));
   const shown = all.filter((bench) => matchesSearch(state.findBench, bench.name, ""));
   const cards = shown.map(benchCard);
   byId("benchmark-cards").replaceChildren(...cards);
-  byId("found-bench").textContent = `${shown.length} of ${all.length} benchmarks`;
+  byId("found-bench").textContent = `${shown.length + runs.shown} of ${count} benchmarks`;
   cards.forEach((card, index) => drawBench(card, shown[index]));
 }

@@ -4,7 +4,7 @@
 const COMMANDS = {
   validate: "cargo xtask validate --quick",
   errors: "cargo xtask error-time",
-  bench: "cargo bench --package tpb-benches && cargo xtask dashboard",
+  bench: "cargo xtask bench && cargo xtask dashboard",
 };
 
 const VERDICTS = {

@@ -37,6 +37,43 @@ fn benchmarks_show_their_latest_value_change_and_history() {
         page.evaluate("document.getElementById('find-bench').value = 'room'").unwrap();
         ask(page, "document.getElementById('find-bench').dispatchEvent(new Event('input'))");
         assert_eq!(ask(page, "document.querySelectorAll('[data-bench]').length"), 1);
-        assert_eq!(text(page, "#found-bench"), "1 of 2 benchmarks");
+        assert_eq!(text(page, "#found-bench"), "1 of 4 benchmarks");
+    });
+}
+
+#[test]
+fn runs_show_instructions_and_rates_with_their_changes() {
+    with_page(&Workshop::full(), |page| {
+        press(page, &["3"]);
+        let beams = "[data-case='box, beams']";
+        let latest = text(page, &format!("{beams} .latest"));
+        assert_eq!(latest, "303 M instructions · 8.00 M pairs per CPU s");
+        // Newest first; against the run before on the same machine.
+        let row = "#bench-runs [data-case-row='box, beams']";
+        let words = text(page, row).split_whitespace().collect::<Vec<_>>().join(" ");
+        for part in ["cccccccc", "303 M ×1.0100 AVX2", "8.00 M pairs ×0.80", "2.50 ×1.25 AVX-512"]
+        {
+            assert!(words.contains(part), "{part} in {words}");
+        }
+        assert_eq!(ask(page, &format!("document.querySelectorAll(`{row}`).length")), 3);
+        assert_eq!(ask(page, &format!("document.querySelectorAll(`{row} .bad`).length")), 3);
+        let plot = format!("tpbDashboard.plots.get(document.querySelector(`{beams} .plot`)).plot");
+        let data = ask(
+            page,
+            &format!(
+                "{plot}.data.filter((c, i) => i > 0 && i % 3 === 0).map((c) => c.join(' ')).join()"
+            ),
+        );
+        assert_eq!(data, "300000000  303000000, 900000000 ");
+        // Never counted: CPU time instead.
+        let path = text(page, "[data-case='box, path'] .latest");
+        assert!(path.starts_with("2.50 CPU s"), "{path}");
+        let costs = text(page, "#costs tbody tr");
+        let words = costs.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.ends_with("1.0300 ≤ 1.02 missed"), "{words}");
+        assert!(text(page, "#costs-note").contains("commit aaaaaaaa"));
+        page.evaluate("document.getElementById('find-bench').value = 'path'").unwrap();
+        ask(page, "document.getElementById('find-bench').dispatchEvent(new Event('input'))");
+        assert_eq!(ask(page, "document.querySelectorAll('[data-case]').length"), 1);
     });
 }

@@ -35,6 +35,7 @@ impl Workshop {
         workshop.put("error-time/hall.json", &scene("hall").to_string());
         workshop.put("error-time/torn.json", "{\"scene\":");
         workshop.put("benchmarks.jsonl", &benchmarks());
+        workshop.put("bench-runs.jsonl", &bench_runs());
         workshop.put("reproduce/index.html", "<title>All &amp; more</title>");
         workshop.put("reproduce/box/index.html", "<title>The box</title>");
         workshop.put("left/wrong.svg", PICTURE);
@@ -68,6 +69,7 @@ impl Workshop {
             plan: plan(),
             histories: vec![self.path("history.jsonl"), self.path("none.jsonl")],
             benchmarks: vec![self.path("benchmarks.jsonl")],
+            bench_runs: vec![self.path("bench-runs.jsonl")],
             error_time: self.path("error-time"),
             shelves: vec![shelf("Scenes", "reproduce"), shelf("Gallery", "gallery")],
             out: self.path("dashboard"),
@@ -173,6 +175,39 @@ fn scene(name: &str) -> Value {
             "reference_nmse": 7e-4, "pixels": [4033, 4096], "replicates": 8, "seed": 1, "threads": 2,
             "circumstances": { "commit": "eeee", "machine": "its machine", "flags": "error-time" },
             "curves": curves })
+}
+
+/// Two runs of one machine, between them one of another; the second counts more and is slower.
+fn bench_runs() -> String {
+    let run = |time: u64,
+               commit: &str,
+               machine: &str,
+               slower: f64,
+               counted: Value,
+               costs: Value| {
+        let command = "tpb render box.json";
+        let case = |name: &str, counted: Value| {
+            json!({ "name": name, "command": command, "passes": 4, "cpu_seconds": 2.0 * slower,
+                    "wall_seconds": 2.0, "vectors": "AVX-512", "rates": { "pairs": 1e7 / slower, "paths": 5.0 },
+                    "counted": counted })
+        };
+        json!({ "time": time, "commit": commit, "machine": machine, "build": "release",
+                "cases": [case("box, beams", counted), case("box, path", Value::Null)],
+                "costs": costs })
+        .to_string()
+    };
+    let counted = |instructions: f64| {
+        json!({ "command": "tpb render box.json --passes=1", "instructions": instructions,
+                "work": { "pairs": 1e6 }, "tool": "callgrind", "vectors": "AVX2" })
+    };
+    let cost = json!([{ "name": "cost/media", "sides": ["media in the program", "compiled out"],
+                        "instructions": [103e6, 100e6], "at_most": 1.02 }]);
+    [
+        run(1_700_000_000, "aaaaaaaaaaaa", "a machine", 1.0, counted(300e6), cost),
+        run(1_700_003_600, "bbbbbbbbbbbb", "another", 9.0, counted(900e6), json!([])),
+        run(1_700_007_200, "cccccccccccc", "a machine", 1.25, counted(303e6), json!([])),
+    ]
+    .join("\n")
 }
 
 fn benchmarks() -> String {

@@ -123,7 +123,7 @@ impl<'a> Builder<'a> {
         let reference = match medium {
             words::Medium::Homogeneous(inline) => {
                 let built = self.homogeneous(inline, node, name())?;
-                return Ok(self.add_medium(built, node));
+                return self.add_medium(built, node);
             }
             words::Medium::Ref(reference) => reference,
         };
@@ -135,7 +135,7 @@ impl<'a> Builder<'a> {
         match &self.dictionary.entries[index].object {
             Object::Medium(words::Medium::Homogeneous(shared)) => {
                 let built = self.homogeneous(shared, &member.value, member.key.clone())?;
-                let id = self.add_medium(built, &member.value);
+                let id = self.add_medium(built, &member.value)?;
                 self.shared_media.insert(index, id);
                 Ok(id)
             }
@@ -143,11 +143,13 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn add_medium(&mut self, medium: Medium, node: &'a Node) -> MediumId {
-        let id = MediumId(self.media.len() as u32);
+    fn add_medium(&mut self, medium: Medium, node: &'a Node) -> Outcome<MediumId> {
+        let without =
+            || Trouble::new("this program was built without media (feature `vacuum`)").at(node);
+        let id = MediumId::of_index(self.media.len()).ok_or_else(without)?;
         self.media.push(medium);
         self.medium_nodes.push(node);
-        id
+        Ok(id)
     }
 
     fn homogeneous(&self, medium: &Homogeneous, node: &Node, name: String) -> Outcome<Medium> {
