@@ -5,6 +5,7 @@
 //! Prints one line of JSON: the set-up's and the passes' CPU seconds, their wall seconds, the vector
 //! instructions that were used, and how much of what was done (`unit`).
 
+use std::num::NonZeroU32;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
@@ -83,14 +84,15 @@ fn photons(seed: u64) -> Pass {
     })
 }
 
-/// Camera paths of cornell-blocks.
+/// Camera paths of cornell-blocks, one for a pixel.
 fn paths(seed: u64) -> Pass {
     let scene = shipped_scene("cornell-blocks");
     let integrator = scene.integrator;
     let plan = Plan::new(&scene, &integrator);
     let mut film = film_of(&scene);
+    let options = PathOptions { samples_per_pass: Some(NonZeroU32::MIN) };
     Box::new(move |index| {
-        let tracer = PathTracer::<1>::new(&scene, &plan, integrator, &PathOptions::default());
+        let tracer = PathTracer::<1>::new(&scene, &plan, integrator, &options);
         tracer.pass(PassId { seed, index }, &mut film).counts.camera_paths
     })
 }
