@@ -79,9 +79,7 @@ impl Case {
                 vec![kernel.to_owned(), passes.to_string(), seed.to_string()]
             }
             Work::Render(folder, scene, options) => {
-                let film = edge.iter().flat_map(|edge| {
-                    ["width", "height"].map(|side| format!("--set=sensor.film.{side}={edge}"))
-                });
+                let film = edge.into_iter().flat_map(film_options);
                 std::iter::once(format!("{folder}/{scene}.json"))
                     .chain(options.iter().map(|&option| option.to_owned()))
                     .chain(film)
@@ -90,6 +88,11 @@ impl Case {
             }
         }
     }
+}
+
+/// A square film with so many pixels along its edges.
+pub(crate) fn film_options(edge: usize) -> impl Iterator<Item = String> {
+    ["width", "height"].into_iter().map(move |side| format!("--set=sensor.film.{side}={edge}"))
 }
 
 /// What all renders have in common: one thread, so many passes, arrays and report only.

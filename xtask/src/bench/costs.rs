@@ -12,7 +12,7 @@ use serde_json::Value;
 use tpb_dashboard::bench_runs::Cost;
 
 use super::callgrind::Callgrind;
-use super::cases::render_options;
+use super::cases::{film_options, render_options};
 use super::programs::{Command, Programs};
 use crate::workspace::{root, say};
 
@@ -38,6 +38,9 @@ struct Pair {
     at_most: Option<f64>,
     at_least: Option<f64>,
 }
+
+/// Pixels along an edge of the films.
+const EDGE: usize = 32;
 
 /// cornell-blocks without its fog.
 const EMPTY_ROOM: &str = "empty room";
@@ -148,14 +151,15 @@ pub(crate) fn measure(
             Ok(callgrind.count(programs.shell(), &file, 1, make)?.instructions)
         };
         let instructions = [count(&pair.sides[0])?, count(&pair.sides[1])?];
-        say(&format!("counted {}", pair.name));
-        costs.push(Cost {
+        let cost = Cost {
             name: pair.name.to_owned(),
             sides: pair.sides.map(|side| side.what.to_owned()),
             instructions,
             at_most: pair.at_most,
             at_least: pair.at_least,
-        });
+        };
+        say(&format!("{}: {:.4}", cost.name, cost.ratio()));
+        costs.push(cost);
     }
     Ok(costs)
 }
@@ -171,7 +175,8 @@ fn command(
     let scene = if pair.scene == EMPTY_ROOM { room.to_owned() } else { PathBuf::from(pair.scene) };
     let options = pair.options.iter().chain(side.options).map(|&option| option.to_owned());
     let arguments = std::iter::once(scene.display().to_string()).chain(options);
-    programs.render(tpb, arguments.chain(render_options(passes, seed)).collect())
+    let arguments = arguments.chain(film_options(EDGE)).chain(render_options(passes, seed));
+    programs.render(tpb, arguments.collect())
 }
 
 /// The scene cornell-blocks without its fog and the boundary in front of it.

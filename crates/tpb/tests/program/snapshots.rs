@@ -65,6 +65,7 @@ fn reports() {
         assert_eq!(report["scene"]["canonical"]["sensor"]["film"]["width"], 12);
         report["scene"]["canonical"] = json!("[the scene]");
         report["program"] = json!("[program and version]");
+        report["vectors"] = json!("[vector instructions]");
         report["peak_memory_bytes"] = json!("[bytes]");
         for measured in ["run", "rates", "ledger_closure"] {
             hide_numbers(&mut report[measured]);
