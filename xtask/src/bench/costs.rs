@@ -4,6 +4,7 @@
 //! the other side is another program: `tpb` with the feature `vacuum`, in which nothing can name a
 //! medium (`crates/scene/src/medium.rs`), so that the compiler leaves out all that depends on one.
 
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -143,12 +144,20 @@ pub(crate) fn measure(
     let room = programs.file("empty-room.json");
     fs::write(&room, empty_room(&fs::read_to_string(root().join(FOG))?)?)?;
     let mut costs: Vec<Cost> = Vec::new();
+    // Several pairs have a side in common.
+    let mut counted: BTreeMap<(bool, String), f64> = BTreeMap::new();
     for pair in pairs {
-        let count = |side: &Side| -> Result<f64, Box<dyn Error>> {
+        let mut count = |side: &Side| -> Result<f64, Box<dyn Error>> {
             let tpb = vacuum.as_deref().filter(|_| side.vacuum).unwrap_or(programs.tpb());
             let file = programs.file("callgrind.out");
             let make = |passes| command(programs, tpb, (pair, side), &room, passes, seed);
-            Ok(callgrind.count(programs.shell(), &file, 1, make)?.instructions)
+            let key = (side.vacuum, make(1).shown);
+            if let Some(&known) = counted.get(&key) {
+                return Ok(known);
+            }
+            let found = callgrind.count(programs.shell(), &file, 1, make)?.instructions;
+            counted.insert(key, found);
+            Ok(found)
         };
         let instructions = [count(&pair.sides[0])?, count(&pair.sides[1])?];
         let cost = Cost {
