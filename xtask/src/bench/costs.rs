@@ -46,10 +46,11 @@ const EDGE: usize = 32;
 /// cornell-blocks without its fog.
 const EMPTY_ROOM: &str = "empty room";
 const FOG: &str = "validation/scenes/cornell-blocks.json";
-const PATH: &[&str] = &["--method=path"];
-const LIGHT: &[&str] = &["--method=light"];
-const ONE: &[&str] = &["--method=beams", "--kernel=1d"];
-const TWO: &[&str] = &["--method=beams", "--kernel=2d"];
+// What is chosen from scene and film otherwise, so that both sides do the same work.
+const PATH: &[&str] = &["--method=path", "--samples-per-pass=8"];
+const LIGHT: &[&str] = &["--method=light", "--photons=4096"];
+const ONE: &[&str] = &["--method=beams", "--kernel=1d", "--radius=0.02", "--surface-radius=0.05"];
+const TWO: &[&str] = &["--method=beams", "--kernel=2d", "--radius=0.02", "--surface-radius=0.05"];
 
 /// Colour on two walls.
 const WALLS: &[&str] = &[
