@@ -1,4 +1,5 @@
-//! Whole camera paths of the path tracer on Cornell blocks (200 bins, depth 100), on one core.
+//! Whole camera paths of the path tracer on Cornell blocks (200 bins, depth 100), on one core: a path is
+//! all flights from the eye on, with their connections to the lamp and their deposits.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use tpb_benches::{film_of, one_thread, shipped_scene};

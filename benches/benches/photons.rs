@@ -1,4 +1,5 @@
-//! Photon tracing on Cornell blocks, on one core: emission, flights, scattering, storing.
+//! Photon tracing on Cornell blocks, on one core: emission, flights, scattering, storing. A segment is one
+//! flight of a photon, from its emission or last event to the next.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use tpb_beams::BeamLength;
