@@ -1,7 +1,7 @@
 //! A bounding volume hierarchy that culls in f32, conservatively, for primitives tested in f64.
 //!
-//! The hierarchy itself is `obvhs` (PLOC construction, binary nodes). This crate owns what makes
-//! it safe for us: coordinates are centred and scaled to about one, so that no scene size
+//! The hierarchy is built by `obvhs` (PLOC construction, reinsertion) as a binary tree, and joined to nodes
+//! of four, with leaves of several primitives. This crate owns what makes it safe for us: coordinates are centred and scaled to about one, so that no scene size
 //! overflows f32; rays that start far away are moved up to the boxes in f64 first; boxes are padded
 //! by more than the rounding of the f32 slab test. A ray may therefore be shown primitives that it
 //! misses, never the reverse.
@@ -10,12 +10,16 @@
 //! roundings after those of o, b and d themselves, each ε/2 relative with ε = 2⁻²³; as a shift of
 //! the plane that is at most (|o| + |b|)·3ε ≤ 2·4·3ε ≈ 2.9e-6. Boxes are padded by 4e-6.
 
+mod leaves;
+mod wide;
+
 use std::time::Duration;
 
 use glam::{DVec3, Vec3A};
-use obvhs::ploc::PlocSearchDistance;
-use obvhs::ray::{Ray, RayHit};
-use obvhs::{BvhBuildParams, bvh2::Bvh2};
+use obvhs::BvhBuildParams;
+
+use crate::leaves::Leaves;
+use crate::wide::{Ray, Wide};
 
 /// Scaled ray origins lie within this distance of the centre; scaled boxes within 1.
 const REACH: f64 = 4.0;
@@ -65,26 +69,37 @@ impl Aabb {
     }
 }
 
-/// How much time to spend on building for faster queries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quality {
-    /// Built anew in every pass (beams).
-    FastBuild,
-    /// Built once (scene geometry).
-    FastQuery,
+/// What asks for leaves on a ray. Its code belongs into that of [`Bvh::walk`]: it may use vector
+/// instructions, so mark it `#[inline(always)]`.
+pub trait Visitor {
+    /// The ray may meet the box of this leaf.
+    fn meet(&mut self, leaf: usize) -> Next;
 }
 
-/// The hierarchy over boxes `0..n`; it answers with their indices.
+/// How the walk along a ray goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Next {
+    /// As it is.
+    On,
+    /// To this distance \[m\].
+    Until(f64),
+    /// Not at all.
+    Stop,
+}
+
+/// The hierarchy over boxes `0..n`; its leaves hold one or several.
 #[derive(Clone)]
 pub struct Bvh {
-    nodes: Bvh2,
+    tree: Wide,
+    leaves: Leaves,
     centre: DVec3,
     per_metre: f64,
 }
 
 impl Bvh {
-    /// Builds over finite boxes (an empty list is fine).
-    pub fn build(boxes: &[Aabb], quality: Quality) -> Self {
+    /// Builds over finite boxes (an empty list is fine), fewer than 2³¹ of them; those that `joins` names
+    /// may share leaves. It takes its time: the geometry of a scene is built once.
+    pub fn build(boxes: &[Aabb], joins: impl Fn(usize) -> bool) -> Self {
         let bounds = boxes.iter().fold(Aabb::EMPTY, |a, &b| a.union(b));
         let (centre, radius) =
             if boxes.is_empty() { (DVec3::ZERO, 1.0) } else { (bounds.centre(), bounds.radius()) };
@@ -97,69 +112,62 @@ impl Bvh {
                 obvhs::aabb::Aabb::new(min.as_vec3a(), max.as_vec3a())
             })
             .collect();
-        let params = match quality {
-            Quality::FastBuild => BvhBuildParams {
-                ploc_search_distance: PlocSearchDistance::Minimum,
-                reinsertion_batch_ratio: 0.0,
-                max_prims_per_leaf: 4,
-                ..BvhBuildParams::fastest_build()
-            },
-            Quality::FastQuery => {
-                // A box costs less than a primitive in f64: no leaf holds more than one.
-                BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::slow_build() }
-            }
-        };
-        let nodes = obvhs::bvh2::builder::build_bvh2(&scaled, params, &mut Duration::default());
-        Self { nodes, centre, per_metre }
+        let params = BvhBuildParams { max_prims_per_leaf: 1, ..BvhBuildParams::slow_build() };
+        let binary = obvhs::bvh2::builder::build_bvh2(&scaled, params, &mut Duration::default());
+        let leaves = Leaves::new(&binary, joins);
+        Self { tree: Wide::new(&binary, &leaves), leaves, centre, per_metre }
     }
 
-    /// Shows `visit` every index whose box the ray may meet at a distance within 0..=`t_max`.
-    /// `visit` returns the distance at which the ray now ends, or `None` to leave it as it is;
-    /// nearer boxes tend to come first. `direction` is a unit vector.
-    #[inline]
-    pub fn visit(
-        &self,
-        origin: DVec3,
-        direction: DVec3,
-        t_max: f64,
-        mut visit: impl FnMut(usize) -> Option<f64>,
-    ) {
-        let scaled = (origin - self.centre) * self.per_metre;
-        // A far origin moves up to the ball that holds all boxes.
-        let skipped = if scaled.length_squared() > REACH * REACH {
-            (-scaled.dot(direction) - REACH).max(0.0)
-        } else {
-            0.0
-        };
-        let start = scaled + skipped * direction;
-        if start.length_squared() > 4.0 * REACH * REACH {
-            return; // passes by, or leads away
-        }
-        let end = |t: f64| ((t * self.per_metre - skipped) * SLACK + PADDING) as f32;
-        let ray = Ray::new(start.as_vec3a(), nonzero(direction), 0.0, end(t_max).min(f32::MAX));
-        if ray.tmax < 0.0 {
-            return;
-        }
-        let indices = &self.nodes.primitive_indices;
-        let mut leaf = |node: &obvhs::bvh2::node::Bvh2Node, ray: &mut Ray, _: &mut RayHit| {
-            let first = node.first_index as usize;
-            for &index in &indices[first..first + node.prim_count as usize] {
-                if let Some(t) = visit(index as usize) {
-                    ray.tmax = end(t);
-                }
+    /// The boxes of each leaf, by the leaves' numbers from 0.
+    pub fn leaves(&self) -> impl Iterator<Item = &[u32]> {
+        self.leaves.members()
+    }
+
+    /// Shows a visitor every leaf with a box that the ray may meet at a distance within 0..=`t_max`, as
+    /// far as the visitor lets it go; nearer leaves tend to come first. `direction` is a unit vector.
+    #[inline(always)]
+    pub fn walk(&self, origin: DVec3, direction: DVec3, t_max: f64, visitor: &mut impl Visitor) {
+        match self.leaves.count() {
+            0 => {}
+            1 => {
+                visitor.meet(0);
             }
-            true
-        };
-        let mut hit = RayHit::none();
-        obvhs::fast_stack!(u32, (96, 192), self.nodes.max_depth, stack, {
-            self.nodes.ray_traverse_dynamic(&mut stack, ray, &mut hit, &mut leaf);
-        });
+            _ => {
+                let Some((mut ray, skipped)) = self.enter(origin, direction, t_max) else { return };
+                self.tree.walk(&mut ray, |t| self.end(t, skipped), visitor);
+            }
+        }
+    }
+
+    /// The ray in the boxes' coordinates, and the distance in them by which it was moved up; `None`
+    /// if it meets no box.
+    #[inline(always)]
+    fn enter(&self, origin: DVec3, direction: DVec3, t_max: f64) -> Option<(Ray, f64)> {
+        let scaled = (origin - self.centre) * self.per_metre;
+        let (mut start, mut skipped) = (scaled, 0.0);
+        if scaled.length_squared() > REACH * REACH {
+            // A far origin moves up to the ball that holds all boxes.
+            skipped = (-scaled.dot(direction) - REACH).max(0.0);
+            start = scaled + skipped * direction;
+            if start.length_squared() > 4.0 * REACH * REACH {
+                return None; // passes by, or leads away
+            }
+        }
+        let end = self.end(t_max, skipped).min(f32::MAX);
+        (end >= 0.0).then(|| (Ray::new(start.as_vec3a(), inverse(direction), end), skipped))
+    }
+
+    /// A distance in the boxes' coordinates, rounded up.
+    #[inline(always)]
+    fn end(&self, t: f64, skipped: f64) -> f32 {
+        ((t * self.per_metre - skipped) * SLACK + PADDING) as f32
     }
 }
 
-/// The direction in f32, no component so small that its inverse is not finite.
-fn nonzero(direction: DVec3) -> Vec3A {
+/// 1/direction in f32, finite.
+#[inline(always)]
+fn inverse(direction: DVec3) -> Vec3A {
     let d = direction.as_vec3a();
     let tiny = Vec3A::splat(1e-30);
-    Vec3A::select(d.abs().cmplt(tiny), tiny.copysign(d), d)
+    Vec3A::select(d.abs().cmplt(tiny), tiny.copysign(d), d).recip()
 }

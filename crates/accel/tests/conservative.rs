@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
-use tpb_accel::{Aabb, Bvh, Quality};
+use tpb_accel::{Aabb, Bvh, Next, Visitor};
 
 /// Whether the ray meets the closed box at a distance within 0..=t_max, in f64.
 fn meets(b: &Aabb, o: DVec3, d: DVec3, t_max: f64) -> bool {
@@ -19,6 +19,25 @@ fn meets(b: &Aabb, o: DVec3, d: DVec3, t_max: f64) -> bool {
         far = far.min(a.max(c));
     }
     near <= far
+}
+
+/// Leaves that were met, the walk's end after so many of them, and a distance to end it at.
+#[derive(Default)]
+struct Seen {
+    leaves: Vec<usize>,
+    most: Option<usize>,
+    until: Option<f64>,
+}
+
+impl Visitor for Seen {
+    fn meet(&mut self, leaf: usize) -> Next {
+        self.leaves.push(leaf);
+        if self.most == Some(self.leaves.len()) {
+            Next::Stop
+        } else {
+            self.until.map_or(Next::On, Next::Until)
+        }
+    }
 }
 
 fn vector(range: f64) -> impl Strategy<Value = DVec3> {
@@ -50,15 +69,30 @@ proptest! {
             direction[axis] = 1.0;
         }
         let t_max = t_max * scale;
-        for quality in [Quality::FastBuild, Quality::FastQuery] {
-            let mut seen = vec![false; boxes.len()];
-            Bvh::build(&boxes, quality).visit(origin, direction, t_max, |i| {
-                seen[i] = true;
-                None
-            });
-            for (i, b) in boxes.iter().enumerate() {
-                // Beyond 1e6 scene radii the f64 ray itself is coarser than the boxes' padding.
-                prop_assert!(seen[i] || !meets(b, origin, direction, t_max), "box {i} lost");
+        // All apart, all together, and some of each.
+        for joins in [|_| false, |_| true, |i| i % 3 > 0] {
+            let bvh = Bvh::build(&boxes, joins);
+            let leaves: Vec<_> = bvh.leaves().map(<[u32]>::to_vec).collect();
+            let mut members = leaves.concat();
+            members.sort_unstable();
+            prop_assert!(members.into_iter().eq(0..boxes.len() as u32), "each is in one leaf");
+            let single = |leaf: &Vec<u32>| leaf.len() == 1 || leaf.iter().all(|&i| joins(i as usize));
+            prop_assert!(leaves.iter().all(single));
+            // The whole way, and to where a visitor ends it.
+            for shorter in [t_max, 0.5 * t_max.min(4.0 * scale)] {
+                let mut seen = Seen { until: Some(shorter).filter(|&t| t < t_max), ..Seen::default() };
+                bvh.walk(origin, direction, t_max, &mut seen);
+                for (leaf, members) in leaves.iter().enumerate() {
+                    for &i in members {
+                        // Beyond 1e6 scene radii the f64 ray itself is coarser than the boxes' padding.
+                        let meets = meets(&boxes[i as usize], origin, direction, shorter);
+                        prop_assert!(seen.leaves.contains(&leaf) || !meets, "box {i} lost");
+                    }
+                }
+                let most = seen.leaves.len().saturating_sub(1).max(1);
+                let mut fewer = Seen { most: Some(most), until: seen.until, ..Seen::default() };
+                bvh.walk(origin, direction, t_max, &mut fewer);
+                prop_assert!(fewer.leaves.iter().eq(seen.leaves.iter().take(most)));
             }
         }
     }
@@ -66,6 +100,7 @@ proptest! {
 
 #[test]
 fn an_empty_hierarchy_shows_nothing() {
-    Bvh::build(&[], Quality::FastQuery)
-        .visit(DVec3::ZERO, DVec3::X, f64::INFINITY, |_| panic!("nothing to show"));
+    let (empty, mut seen) = (Bvh::build(&[], |_| true), Seen::default());
+    empty.walk(DVec3::ZERO, DVec3::X, f64::INFINITY, &mut seen);
+    assert!(seen.leaves.is_empty() && empty.leaves().count() == 0);
 }

@@ -49,6 +49,12 @@ impl<S: Simd> F64s<S> {
         self.0.reduce_max_f64s(self.1)
     }
 
+    /// The smallest of them.
+    #[inline(always)]
+    pub fn smallest(self) -> f64 {
+        self.0.reduce_min_f64s(self.1)
+    }
+
     /// √self.
     #[inline(always)]
     #[must_use]
@@ -67,6 +73,12 @@ impl<S: Simd> F64s<S> {
     #[inline(always)]
     pub fn less(self, other: Self) -> Mask<S> {
         Mask(self.0, self.0.less_than_f64s(self.1, other.1))
+    }
+
+    /// self = other.
+    #[inline(always)]
+    pub fn equals(self, other: Self) -> Mask<S> {
+        Mask(self.0, self.0.equal_f64s(self.1, other.1))
     }
 
     /// The smaller; of a NaN either.

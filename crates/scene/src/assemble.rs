@@ -1,10 +1,11 @@
 //! From parts to a scene: laid out, consistent, and with a region at the camera and every emitter
 //! ([`crate::probe`]).
 
-use tpb_accel::{Aabb, Bvh, Quality};
+use tpb_accel::{Aabb, Bvh};
 use tpb_optics::Rgb;
 
 use crate::emitter::EmittingSurface;
+use crate::packet::{self, Leaves};
 use crate::probe::Probe;
 use crate::world::Choice;
 use crate::{
@@ -266,8 +267,10 @@ fn lay_out(parts: SceneParts, media_eta: &[f64]) -> Scene {
     let connectable: Vec<_> =
         emitters.iter().map(|e| if e.kind.can_be_connected() { weight(e) } else { 0.0 }).collect();
     let boxes: Vec<_> = primitives.iter().map(Primitive::bounds).collect();
+    let bvh = Bvh::build(&boxes, |index| packet::joins(&primitives[index]));
     Scene {
-        bvh: Bvh::build(&boxes, Quality::FastQuery),
+        leaves: Leaves::new(&bvh, &primitives),
+        bvh,
         emission_choice: Choice::new(&all),
         connection_choice: Choice::new(&connectable),
         primitives,

@@ -6,6 +6,8 @@ use tpb_accel::{Aabb, Bvh};
 use tpb_optics::{Rgb, Spectrum, Stream};
 
 use crate::emitter::EmittingSurface;
+use crate::packet::Leaves;
+use crate::query::{END_TOLERANCE, Nearest, Obstacle, Obstacles};
 use crate::{
     Bsdf, Emission, Emitter, EmitterKind, FilmSpec, Flight, Hit, Incident, IntegratorSpec,
     LightPoint, Medium, MediumBoundary, MediumId, Primitive, Region, Sensor, Span, Texture,
@@ -14,11 +16,6 @@ use crate::{
 
 /// Null boundaries that one flight may cross; more means surfaces that coincide without end.
 const MAX_NULL_CROSSINGS: usize = 4096;
-
-/// A hit that lies within this relative distance of a connection's end belongs to the end's own
-/// primitive (curved ones; a plane is never met again). It shortens the *test* only: transmittance
-/// and time use the full distance.
-const END_TOLERANCE: f64 = 1e-9;
 
 /// One shape: a run of primitives with one material.
 #[derive(Clone, Debug)]
@@ -61,6 +58,7 @@ pub struct Scene {
     pub(crate) emission_choice: Choice,
     pub(crate) connection_choice: Choice,
     pub(crate) bvh: Bvh,
+    pub(crate) leaves: Leaves,
 }
 
 impl Scene {
@@ -95,23 +93,17 @@ impl Scene {
     /// The nearest surface within `t_max`: its distance and primitive.
     #[inline]
     pub fn nearest(&self, from: &Vertex, direction: DVec3, t_max: f64) -> Option<(f64, u32)> {
-        let mut best = (t_max, u32::MAX);
-        self.bvh.visit(from.position, direction, t_max, |index| {
-            let stands_on = from.primitive == Some(index as u32);
-            let p = &self.primitives[index];
-            let t = p.intersect(from.position, direction, best.0, stands_on)?;
-            best = (t, index as u32);
-            Some(t)
-        });
-        (best.1 != u32::MAX).then_some(best)
+        tpb_lanes::dispatch(Nearest { scene: self, from: *from, direction, end: t_max })
     }
 
     /// Flies on through null boundaries to the first surface that acts on light.
     #[inline]
     pub fn fly(&self, from: &Vertex, direction: DVec3) -> Flight {
-        let mut spans = SmallVec::new();
-        let hit = self.follow(from, direction, f64::INFINITY, None, &mut spans);
-        Flight { origin: from.position, direction, spans, hit }
+        // In place: a flight is large.
+        let mut flight =
+            Flight { origin: from.position, direction, spans: SmallVec::new(), hit: None };
+        flight.hit = self.follow(from, direction, f64::INFINITY, None, &mut flight.spans);
+        flight
     }
 
     /// The flight to a point at `distance`, if no surface but null boundaries lies in between.
@@ -124,9 +116,20 @@ impl Scene {
         distance: f64,
         end_primitive: Option<u32>,
     ) -> Option<Flight> {
-        let mut spans = SmallVec::new();
-        let hit = self.follow(from, direction, distance, end_primitive, &mut spans);
-        hit.is_none().then_some(Flight { origin: from.position, direction, spans, hit })
+        let (scene, from) = (self, *from);
+        let obstacles = Obstacles { scene, from, direction, end: distance, end_primitive };
+        let obstacle = tpb_lanes::dispatch(obstacles);
+        if obstacle == Obstacle::Surface {
+            return None;
+        }
+        let mut flight =
+            Flight { origin: from.position, direction, spans: SmallVec::new(), hit: None };
+        if obstacle == Obstacle::None {
+            flight.spans.push(Span { start: 0.0, end: distance, region: from.region });
+        } else {
+            flight.hit = self.follow(&from, direction, distance, end_primitive, &mut flight.spans);
+        }
+        flight.hit.is_none().then_some(flight)
     }
 
     /// Collects spans up to `length` or to the first non-null hit, which is returned.

@@ -32,14 +32,14 @@ pub struct VertexData {
 /// A planar piece; its normal is along u × v.
 #[derive(Clone, Debug)]
 pub struct Planar {
-    origin: DVec3,
+    pub(crate) origin: DVec3,
     u: DVec3,
     v: DVec3,
     /// Unit normal.
     pub normal: DVec3,
-    dual_u: DVec3,
-    dual_v: DVec3,
-    outline: Outline,
+    pub(crate) dual_u: DVec3,
+    pub(crate) dual_v: DVec3,
+    pub(crate) outline: Outline,
     vertices: Option<Box<VertexData>>,
 }
 
