@@ -24,6 +24,7 @@ pub const fn vectors<S: Simd>() -> usize {
 }
 
 /// Runs `work` with the widest vector instructions that the machine has.
+#[inline(always)]
 pub fn dispatch<W: WithSimd>(work: W) -> W::Output {
     Instructions::widest().dispatch(work)
 }

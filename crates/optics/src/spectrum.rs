@@ -31,8 +31,12 @@ impl<const C: usize> Spectrum<C> {
     /// Applies `f` to each channel.
     #[must_use]
     #[inline]
-    pub fn map(self, f: impl FnMut(f64) -> f64) -> Self {
-        Self(self.0.map(f))
+    pub fn map(mut self, mut f: impl FnMut(f64) -> f64) -> Self {
+        // Loops, here and below: `array::map` and `from_fn` are not always inlined.
+        for value in &mut self.0 {
+            *value = f(*value);
+        }
+        self
     }
 
     /// The mean of the channels.
@@ -76,7 +80,11 @@ impl Rgb {
     /// (only asked of achromatic scenes, where it equals the others).
     #[inline]
     pub fn channels<const C: usize>(self) -> Spectrum<C> {
-        Spectrum(std::array::from_fn(|c| self.0[c]))
+        let mut channels = [0.0; C];
+        for (channel, value) in channels.iter_mut().zip(self.0) {
+            *channel = value;
+        }
+        Spectrum(channels)
     }
 }
 
@@ -85,8 +93,11 @@ macro_rules! channelwise {
         impl<const C: usize> $trait for Spectrum<C> {
             type Output = Self;
             #[inline]
-            fn $method(self, other: Self) -> Self {
-                Self(std::array::from_fn(|c| self.0[c] $op other.0[c]))
+            fn $method(mut self, other: Self) -> Self {
+                for (value, other) in self.0.iter_mut().zip(other.0) {
+                    *value = *value $op other;
+                }
+                self
             }
         }
     };
