@@ -36,31 +36,34 @@ pub struct SurfaceMap<const C: usize> {
     /// Bucket b holds photons `starts[b]..starts[b + 1]`.
     starts: Vec<u32>,
     radius: f64,
+    cells: Cells,
 }
 
 impl<const C: usize> SurfaceMap<C> {
     /// For density estimates within `radius`.
     pub fn new(mut photons: Vec<SurfacePhoton<C>>, radius: f64) -> Self {
-        let buckets = photons.len().next_power_of_two().max(1);
-        let bucket = |p: &SurfacePhoton<C>| bucket_of(cell_of(p.position, radius), buckets);
-        let mut starts = vec![0_u32; buckets + 1];
-        for photon in &photons {
-            starts[bucket(photon) + 1] += 1;
+        let count = photons.len().next_power_of_two().max(1);
+        let cells = Cells { per_metre: 1.0 / (ROOM * radius), buckets: count };
+        let buckets: Vec<u32> =
+            photons.iter().map(|p| cells.bucket(cells.of(p.position)) as u32).collect();
+        let mut starts = vec![0_u32; count + 1];
+        for bucket in &buckets {
+            starts[*bucket as usize + 1] += 1;
         }
-        for b in 0..buckets {
+        for b in 0..count {
             starts[b + 1] += starts[b];
         }
         // A stable counting sort, in place: photons are held once.
         let mut next = starts.clone();
         let mut order = vec![0_u32; photons.len()];
-        for (index, photon) in photons.iter().enumerate() {
-            let slot = &mut next[bucket(photon)];
+        for (index, bucket) in buckets.into_iter().enumerate() {
+            let slot = &mut next[bucket as usize];
             order[*slot as usize] = index as u32;
             *slot += 1;
         }
         permute(&mut photons, order);
         let positions = photons.iter().map(|photon| photon.position).collect();
-        Self { photons, positions, starts, radius }
+        Self { photons, positions, starts, radius, cells }
     }
 
     /// Shows `found` every photon of the disc around `hit`, on the side of `normal`.
@@ -77,18 +80,21 @@ impl<const C: usize> SurfaceMap<C> {
         }
         let same_surface = Surface::new(scene, hit.primitive);
         let squared = self.radius * self.radius;
-        let lowest = cell_of(hit.position - DVec3::splat(self.radius), self.radius);
+        // The disc lies in eight cells. Several may share a bucket, which is looked at once: each photon is
+        // in one bucket.
+        let lowest = self.cells.of(hit.position - DVec3::splat(self.radius));
+        let mut seen = [usize::MAX; 8];
         for corner in 0..8 {
             let cell = lowest + I64Vec3::new(corner & 1, (corner >> 1) & 1, corner >> 2);
-            let bucket = bucket_of(cell, self.starts.len() - 1);
+            let bucket = self.cells.bucket(cell);
+            if seen.contains(&bucket) {
+                continue;
+            }
+            seen[corner as usize] = bucket;
             let range = self.starts[bucket] as usize..self.starts[bucket + 1] as usize;
-            for index in range {
-                let position = self.positions[index];
-                if (position - hit.position).length_squared() >= squared {
-                    continue;
-                }
-                let photon = &self.photons[index];
-                if cell_of(position, self.radius) == cell
+            for (position, photon) in self.positions[range.clone()].iter().zip(&self.photons[range])
+            {
+                if (*position - hit.position).length_squared() < squared
                     && photon.normal.dot(normal) > LEAST_COSINE
                     && same_surface.holds(photon.primitive)
                 {
@@ -164,26 +170,56 @@ impl Surface {
     }
 }
 
-#[inline]
-fn cell_of(position: DVec3, radius: f64) -> I64Vec3 {
-    (position / (2.0 * radius)).floor().as_i64vec3()
+/// Edge of a cell over the radius: a disc lies in two cells along each axis, whatever the rounding.
+const ROOM: f64 = 2.0 * (1.0 + 1e-9);
+
+/// Cells of space, and the buckets of a hash table that they are kept in.
+struct Cells {
+    /// 1/edge \[1/m\].
+    per_metre: f64,
+    /// A power of two.
+    buckets: usize,
 }
 
-#[inline]
-fn bucket_of(cell: I64Vec3, buckets: usize) -> usize {
-    let mut hash = 0_u64;
-    for coordinate in cell.to_array() {
-        hash = (hash ^ coordinate as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        hash ^= hash >> 32;
+impl Cells {
+    /// The cell of a point.
+    #[inline]
+    fn of(&self, position: DVec3) -> I64Vec3 {
+        // `floor` is a call of a function on machines without SSE 4.1.
+        let floor = |x: f64| {
+            let whole = x as i64;
+            whole - i64::from(whole as f64 > x)
+        };
+        let DVec3 { x, y, z } = position * self.per_metre;
+        I64Vec3::new(floor(x), floor(y), floor(z))
     }
-    hash as usize & (buckets - 1)
+
+    #[inline]
+    fn bucket(&self, cell: I64Vec3) -> usize {
+        let mut hash = 0_u64;
+        for coordinate in cell.to_array() {
+            hash = (hash ^ coordinate as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            hash ^= hash >> 32;
+        }
+        hash as usize & (self.buckets - 1)
+    }
 }
 
-/// Area of the disc of `radius` around the origin inside a convex polygon: over the edges, the
+/// Area of the disc of `radius` around the origin inside a parallelogram: over the edges, the
 /// signed area of the disc within the triangle from the origin to the edge.
-fn covered_area(corners: &[DVec2], radius: f64) -> f64 {
-    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-    edges.map(|(&p, &q)| edge_area(p, q, radius)).sum::<f64>().abs()
+fn covered_area(corners: &[DVec2; 4], radius: f64) -> f64 {
+    let edges = [0, 1, 2, 3].map(|i| (corners[i], corners[(i + 1) % 4]));
+    // Nearly always the disc is within: the origin is on the inner side of all edges, farther than the
+    // radius.
+    let turn = (corners[1] - corners[0]).perp_dot(corners[2] - corners[1]);
+    let inner = |(p, q): (DVec2, DVec2)| {
+        let height = p.perp_dot(q - p);
+        height * turn > 0.0 && height * height >= radius * radius * (q - p).length_squared()
+    };
+    if edges.into_iter().all(inner) {
+        return PI * radius * radius;
+    }
+    edges.into_iter().map(|(p, q)| edge_area(p, q, radius)).sum::<f64>().abs()
 }
 
 /// Signed area of disc ∩ triangle(0, p, q): a triangle where the edge is inside the disc, sectors
