@@ -95,17 +95,17 @@ macro_rules! channelwise {
             #[inline]
             fn $method(mut self, other: Self) -> Self {
                 for (value, other) in self.0.iter_mut().zip(other.0) {
-                    *value = *value $op other;
+                    *value $op other;
                 }
                 self
             }
         }
     };
 }
-channelwise!(Add, add, +);
-channelwise!(Sub, sub, -);
-channelwise!(Mul, mul, *);
-channelwise!(Div, div, /);
+channelwise!(Add, add, +=);
+channelwise!(Sub, sub, -=);
+channelwise!(Mul, mul, *=);
+channelwise!(Div, div, /=);
 
 impl<const C: usize> Mul<f64> for Spectrum<C> {
     type Output = Self;

@@ -137,7 +137,7 @@ fn columns<S: Simd>(of: &Columns, simd: S, index: usize) -> [F64s<S>; 3] {
 /// The leaves of a scene's hierarchy.
 #[derive(Clone, Default)]
 pub(crate) struct Leaves {
-    leaves: Vec<Leaf>,
+    ends: Vec<Leaf>,
     packets: Vec<Packet>,
     /// Primitives that are tested one by one.
     single: Vec<u32>,
@@ -182,7 +182,7 @@ impl Leaves {
             all.single.extend(single);
             leaf.packets.1 = all.packets.len() as u32;
             leaf.single.1 = all.single.len() as u32;
-            all.leaves.push(leaf);
+            all.ends.push(leaf);
         }
         all
     }
@@ -190,7 +190,7 @@ impl Leaves {
     /// The packets of a leaf, and its other primitives.
     #[inline(always)]
     pub(crate) fn leaf(&self, leaf: usize) -> (&[Packet], &[u32]) {
-        let Leaf { packets, single } = self.leaves[leaf];
+        let Leaf { packets, single } = self.ends[leaf];
         (
             &self.packets[packets.0 as usize..packets.1 as usize],
             &self.single[single.0 as usize..single.1 as usize],
