@@ -48,7 +48,7 @@ fn main() {
     let corners = displaced_sphere();
     let scene = scene(&corners);
     let narrow = corners.iter().map(|c| {
-        let [v0, v1, v2] = c.map(|p| p.as_vec3a());
+        let [v0, v1, v2] = c.map(DVec3::as_vec3a);
         Triangle { v0, v1, v2 }
     });
     let narrow: Vec<_> = narrow.collect();
