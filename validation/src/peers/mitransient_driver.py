@@ -85,6 +85,9 @@ def main():
         traced, running = tracing.seconds()[0], Clock()
         dr.eval(steady, transient)
         dr.sync_thread()
+        if threads == 1:
+            # Without workers, kernels run before `render` returns: tracing cannot be told apart.
+            traced, running = 0.0, tracing
         cpu, wall = running.seconds()
         # Channels are averaged, as errors are those of the mean over channels.
         means = [np.array(image).mean(axis=-1, dtype=np.float64) for image in (steady, transient)]

@@ -47,6 +47,8 @@ type Outcome<T> = Result<T, Refusal>;
 #[derive(Clone, Copy)]
 enum Rule {
     Same,
+    /// A number, which must not look whole to Mitsuba, or a name.
+    Ior,
     Colour,
     /// A colour or a texture.
     Texture,
@@ -56,7 +58,7 @@ enum Rule {
     Dropped,
 }
 
-use Rule::{Colour, Dropped, File, Plugin, Same, Texture, Transform};
+use Rule::{Colour, Dropped, File, Ior, Plugin, Same, Texture, Transform};
 
 /// Parameters of every shape.
 const SHAPE: &[(&str, Rule)] = &[
@@ -103,8 +105,8 @@ fn rules(plugin: &str) -> Option<Vec<(&'static str, Rule)>> {
             ("specular_reflectance", Colour),
         ],
         "dielectric" | "thindielectric" | "roughdielectric" => &[
-            ("int_ior", Same),
-            ("ext_ior", Same),
+            ("int_ior", Ior),
+            ("ext_ior", Ior),
             ("distribution", Same),
             ("alpha", Same),
             ("alpha_u", Same),
@@ -251,6 +253,7 @@ impl Translator<'_> {
             };
             let translated = match rule {
                 Same => value.clone(),
+                Ior => value.as_f64().map_or_else(|| value.clone(), |index| json!(index)),
                 Texture if rgb_of(value).is_none() => self.plugin(value, &place)?,
                 Colour | Texture => colour(value, &place)?,
                 Transform => transform(value, &place)?,

@@ -83,6 +83,15 @@ fn steps_are_composed_and_the_first_acts_first() {
     assert_eq!(dictionary["sensor"]["near_clip"], json!(NEAR_CLIP));
 }
 
+/// Mitsuba takes a whole number for neither an index nor a name.
+#[test]
+fn indices_are_never_whole_numbers() {
+    let glass = r#"{"type": "dielectric", "int_ior": "bk7", "ext_ior": 1}"#;
+    let glass = with("glass", glass).unwrap().dictionary["glass"].clone();
+    assert_eq!(glass["int_ior"], json!("bk7"));
+    assert_eq!(glass["ext_ior"].to_string(), "1.0");
+}
+
 #[test]
 fn coefficients_become_extinction_albedo_and_scale() {
     let fog = |text: &str| with("fog", text).unwrap().dictionary["fog"].clone();
