@@ -34,10 +34,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let passes: u64 = passes.parse()?;
     let seed: u64 = rest.first().map_or(Ok(1), |seed| seed.parse())?;
     let started = ProcessTime::now();
-    let (unit, mut pass) = kernel_of(kernel, seed)?;
+    let (unit, pass) = kernel_of(kernel, seed)?;
     let setup = started.elapsed().as_secs_f64();
     let (started, wall) = (ProcessTime::now(), Instant::now());
-    let work: u64 = one_thread(|| (0..passes).map(|index| pass(index)).sum());
+    let work: u64 = one_thread(|| (0..passes).map(pass).sum());
     let (cpu, wall) = (started.elapsed().as_secs_f64(), wall.elapsed().as_secs_f64());
     let instructions = Instructions::widest();
     println!(

@@ -41,6 +41,7 @@ counted.
 
 Each run is a line of history.jsonl in --out; it is compared there, and in benches/history.jsonl, with the
 last run of the same machine and build. `cargo xtask dashboard` draws them.")]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line are independent")]
 pub(crate) struct BenchArgs {
     /// Whole renders once and instructions, without Criterion's benchmarks
     #[arg(long)]
@@ -135,7 +136,9 @@ fn finish(args: &BenchArgs, run: &BenchRun, out: &Path) -> Outcome {
     let changes = bench_runs::changes(run, &bench_runs::merge(earlier));
     say("");
     if !run.cases.is_empty() {
-        tables::cases(run, &changes).iter().for_each(|line| say(line));
+        for line in tables::cases(run, &changes) {
+            say(&line);
+        }
         let mut commits: Vec<_> = changes.iter().flatten().map(|c| c.commit.as_str()).collect();
         commits.sort_unstable();
         commits.dedup();
@@ -147,7 +150,9 @@ fn finish(args: &BenchArgs, run: &BenchRun, out: &Path) -> Outcome {
     }
     if !run.costs.is_empty() {
         say("");
-        tables::costs(&run.costs).iter().for_each(|line| say(line));
+        for line in tables::costs(&run.costs) {
+            say(&line);
+        }
     }
     lines::append(&own, std::slice::from_ref(run))?;
     if args.record {
@@ -287,6 +292,7 @@ fn features() -> Vec<String> {
 fn build() -> Result<String, Box<dyn Error>> {
     let manifest = std::fs::read_to_string(root().join("Cargo.toml"))?;
     let flags = ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS"];
+    #[expect(clippy::disallowed_methods, reason = "what cargo builds with is told, not obeyed")]
     let flags = flags.iter().filter_map(|name| std::env::var(name).ok());
     let flags: Vec<String> = flags.filter(|flags| !flags.is_empty()).collect();
     let flags = if flags.is_empty() { "none".to_owned() } else { flags.join(" ") };

@@ -16,6 +16,7 @@ pub enum MediumId {}
 impl MediumId {
     /// Of an index; `None` in a program without media.
     #[cfg(not(feature = "vacuum"))]
+    #[expect(clippy::unnecessary_wraps, reason = "a program without media has none")]
     pub(crate) fn of_index(index: usize) -> Option<Self> {
         Some(Self(index as u32))
     }

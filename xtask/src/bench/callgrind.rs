@@ -35,6 +35,7 @@ impl Callgrind {
     }
 
     /// Counts the instructions of a pass; `command` makes the command for so many passes.
+    #[expect(clippy::unused_self, reason = "who counts has found Callgrind")]
     pub(crate) fn count(
         &self,
         sh: &Shell,
