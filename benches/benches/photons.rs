@@ -2,8 +2,8 @@
 //! flight of a photon, from its emission or last event to the next.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use tpb_beams::BeamLength;
 use tpb_beams::photons::PhotonTracer;
+use tpb_beams::{BeamLength, Sampler, Sampling};
 use tpb_benches::{one_thread, shipped_scene};
 use tpb_render::PassId;
 use tpb_scene::Plan;
@@ -14,7 +14,13 @@ fn photons(criterion: &mut Criterion) {
     let scene = shipped_scene("cornell-blocks");
     let integrator = scene.integrator;
     let plan = Plan::new(&scene, &integrator);
-    let tracer = PhotonTracer { scene: &scene, plan: &plan, integrator, length: BeamLength::Long };
+    let tracer = PhotonTracer {
+        scene: &scene,
+        plan: &plan,
+        integrator,
+        length: BeamLength::Long,
+        sampling: Sampling { sampler: Sampler::Sobol, thin_from: 2 },
+    };
     let id = PassId { seed: 1, index: 0 };
     let mut group = criterion.benchmark_group("photons");
     // One segment leaves one beam in this scene, whose medium fills all of it.

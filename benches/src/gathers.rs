@@ -9,7 +9,7 @@ use tpb_beams::photons::PhotonTracer;
 use tpb_beams::scan::Lattice;
 use tpb_beams::sight::Sights;
 use tpb_beams::splat::{Splat, TileRays};
-use tpb_beams::{BeamLength, Temporal};
+use tpb_beams::{BeamLength, Sampling, Temporal};
 use tpb_film::{Grain, TransientFilm};
 use tpb_lanes::Instructions;
 use tpb_render::PassId;
@@ -35,7 +35,13 @@ impl Gathers {
         let integrator = scene.integrator;
         let plan = Plan::new(&scene, &integrator);
         let length = BeamLength::Long;
-        let tracer = PhotonTracer { scene: &scene, plan: &plan, integrator, length };
+        let tracer = PhotonTracer {
+            scene: &scene,
+            plan: &plan,
+            integrator,
+            length,
+            sampling: Sampling::default(),
+        };
         let beams = tracer.trace::<1>(PassId { seed: 1, index: 0 }, photons, photons).beams;
         let (rays, film) = (rays(&scene), film_of(&scene));
         Self { scene, beams, rays, film }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::experiment::{Effort, Experiment, Kind};
 use crate::experiments::{
     blur, calibration, echoes, energy, equal_time, even_spread, fresnel, furnace, glass,
-    infinite_medium, kernels, lens, mirrors, refraction, samplers, slab, sphere, spot,
+    infinite_medium, kernels, lens, mirrors, progressive, refraction, samplers, slab, sphere, spot,
     standard_error, tables,
 };
 use crate::matrix;
@@ -57,6 +57,7 @@ fn sound(effort: Effort) -> Experiments {
         matrix::all(effort),
         even_spread::all(),
         blur::all(effort),
+        progressive::all(effort),
         equal_time::all(effort),
     ]
     .concat()

@@ -8,7 +8,9 @@
 use glam::DVec3;
 use tpb_optics::Stream;
 use tpb_scene::{IntegratorSpec, Scene};
-use tpb_transport::{FreeFlight, Outcome, Photon, PhotonBatch, PhotonTracer, PhotonVisitor};
+use tpb_transport::{
+    FreeFlight, Outcome, Photon, PhotonBatch, PhotonTracer, PhotonVisitor, Sampling,
+};
 
 use crate::statistics::Batches;
 
@@ -50,7 +52,7 @@ pub fn read(scene: &Scene, integrator: IntegratorSpec, taps: &[Tap], plan: &TapP
     let mut order: Vec<usize> = (0..taps.len()).collect();
     order.sort_by(|&a, &b| taps[a].opl.total_cmp(&taps[b].opl));
     let (taps, order) = (&taps, &order);
-    let tracer = PhotonTracer { scene, integrator };
+    let tracer = PhotonTracer { scene, integrator, sampling: Sampling::default() };
     let mut batches = Batches::new();
     for pass in 0..plan.batches {
         let batch = PhotonBatch { seed: plan.seed, pass, count: plan.photons };

@@ -24,10 +24,11 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use tpb_film::{Arrival, Ledger, Tile};
 use tpb_lanes::Instructions;
-use tpb_optics::{Spectrum, Stream};
+use tpb_optics::quasi::{self, Points};
+use tpb_optics::{Spectrum, Stream, seed_of};
 use tpb_render::PassId;
-use tpb_scene::{Flight, Hit, IntegratorSpec, Plan, Scene, Vertex};
-use tpb_transport::{Carrier, DiffuseLobe, Encounter, Response, Turn, roulette};
+use tpb_scene::{Flight, Hit, IntegratorSpec, LightPoint, Plan, Scene, Vertex};
+use tpb_transport::{Carrier, DiffuseLobe, Encounter, Response, Sampler, Turn, roulette};
 
 use crate::beam::{Beam, CameraRay};
 use crate::beam_map::{BeamMap, Pairs};
@@ -72,6 +73,9 @@ pub(crate) struct Camera<'a, const C: usize, K> {
 pub(crate) struct Path<const C: usize> {
     /// The pixel's place in the tile.
     place: usize,
+    /// Its number among the pixel's paths of the pass, and where these look for light.
+    sample: u32,
+    lights: Points,
     unwarp_opl: f64,
     pub(crate) vertex: Vertex,
     pub(crate) direction: DVec3,
@@ -92,6 +96,12 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             .pixels()
             .map(|pixel| Stream::new(id.seed, id.index, stream_item::pixel(pixel)))
             .collect();
+        let lights: Vec<_> = tile
+            .pixels()
+            .map(|pixel| {
+                Points::new(seed_of(seed_of(id.seed, id.index), stream_item::pixel(pixel)))
+            })
+            .collect();
         let first = tile.pixels().next().unwrap_or_default();
         let mut of_tile = Stream::new(id.seed, id.index, stream_item::tile(first));
         let shift = [of_tile.uniform(), of_tile.uniform()];
@@ -110,7 +120,10 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             }
             let mut wave: Vec<_> = (0..)
                 .zip(flights)
-                .map(|(place, flight)| (Path::new(self.scene.eye(), place, &flight), flight))
+                .map(|(place, flight)| {
+                    let at = (place, sample);
+                    (Path::new(self.scene.eye(), at, lights[place], &flight), flight)
+                })
                 .collect();
             while !wave.is_empty() {
                 let next = wave.into_iter().filter_map(|(mut path, flight)| {
@@ -232,6 +245,25 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
         }
     }
 
+    /// One of the path's points on light sources. All of a pixel's in a pass, and those of each path,
+    /// are spread evenly.
+    pub(crate) fn sample_light(
+        &self,
+        path: &Path<C>,
+        nth: u32,
+        rng: &mut Stream,
+    ) -> Option<LightPoint> {
+        if self.settings.sampler == Sampler::Sobol {
+            let index = u64::from(path.sample) * u64::from(self.settings.light_samples);
+            let set = path.events.min(quasi::SETS - 1);
+            let lead = path.lights.at(index + u64::from(nth), set, rng);
+            rng.lead(&lead);
+        }
+        let point = self.scene.sample_light(rng);
+        rng.lead(&[]);
+        point
+    }
+
     /// Next-event estimation at a diffuse surface.
     fn direct(
         &self,
@@ -246,8 +278,8 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
         let samples = self.settings.light_samples;
         let rho = lobe.reflectance.channels();
         let reflected = path.throughput * rho * (share / (PI * f64::from(samples)));
-        for _ in 0..samples {
-            let Some(point) = self.scene.sample_light(rng) else { return };
+        for nth in 0..samples {
+            let Some(point) = self.sample_light(path, nth, rng) else { return };
             let Some(light) = self.scene.incident::<C>(&point, path.vertex.position) else {
                 continue;
             };
@@ -301,9 +333,11 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
 
 impl<const C: usize> Path<C> {
     /// Before its first flight.
-    fn new(eye: Vertex, place: usize, flight: &Flight) -> Self {
+    fn new(eye: Vertex, (place, sample): (usize, u32), lights: Points, flight: &Flight) -> Self {
         Self {
             place,
+            sample,
+            lights,
             unwarp_opl: flight.hit.as_ref().map_or(0.0, |hit| flight.opl(hit.distance)),
             vertex: eye,
             direction: flight.direction,

@@ -55,6 +55,7 @@ pub mod sweep;
 
 pub use method::PhotonBeams;
 pub use options::{BeamLength, BeamOptions, KernelChoice, OptionError, Settings, Temporal};
+pub use tpb_transport::{Sampler, Sampling};
 
 /// Items of the random streams: photons count from 0, pixels from 2⁶³, tiles from 3·2⁶².
 pub(crate) mod stream_item {

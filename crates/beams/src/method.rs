@@ -4,6 +4,7 @@ use tpb_film::{Grain, TransientFilm};
 use tpb_lanes::Instructions;
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Plan, Scene};
+use tpb_transport::Sampling;
 
 use crate::beam::Beam;
 use crate::beam_map::{BeamMap, Pairs};
@@ -102,7 +103,9 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
         let Self { scene, plan, integrator, settings, .. } = self;
         let (radius, surface_radius) = settings.radii(id.index);
         let Settings { photons_per_pass, beam_photons, .. } = *settings;
-        let tracer = PhotonTracer { scene, plan, integrator: *integrator, length: settings.length };
+        let Settings { length, sampler, thin_from, .. } = *settings;
+        let sampling = Sampling { sampler, thin_from };
+        let tracer = PhotonTracer { scene, plan, integrator: *integrator, length, sampling };
         let traced = tracer.trace::<C>(id, photons_per_pass, beam_photons);
         let surface_photons = traced.surface.len() as u64;
         let photons = SurfaceMap::new(traced.surface, surface_radius);

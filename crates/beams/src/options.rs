@@ -1,7 +1,8 @@
 //! What a user may choose, and what is chosen otherwise.
 
 use serde::{Deserialize, Serialize};
-use tpb_scene::{Kernel, Plan, Scene};
+use tpb_scene::{EmitterKind, Kernel, Plan, Scene};
+use tpb_transport::Sampler;
 
 use crate::defaults;
 
@@ -71,6 +72,11 @@ pub struct BeamOptions {
     pub surface_samples: Option<u32>,
     /// Connections to light sources per camera path.
     pub light_samples: Option<u32>,
+    /// Scattering events from which photons that have lost power are thinned out, so that those left
+    /// carry what they began with.
+    pub thin_from: Option<u32>,
+    /// Where photons start, and which points of lights are connected to; by default Sobol.
+    pub sampler: Option<Sampler>,
 }
 
 impl BeamOptions {
@@ -131,6 +137,10 @@ pub struct Settings {
     pub surface_samples: u32,
     /// Connections to light sources per camera path.
     pub light_samples: u32,
+    /// Scattering events from which photons that have lost power are thinned out.
+    pub thin_from: u32,
+    /// Where photons start, and which points of lights are connected to.
+    pub sampler: Sampler,
 }
 
 /// Passes over which radii keep nearly their first value.
@@ -148,8 +158,20 @@ const MOST_PHOTONS: u64 = 1 << 18;
 const SURFACE_BYTES: u64 = 400;
 /// Likewise of its beams with their places in the tiles' lists, 5.3 beams each: 3440.
 const BEAM_BYTES: u64 = 4000;
+/// Connections to light sources per camera path, where there is a choice.
+const LIGHT_SAMPLES: u32 = 8;
 /// Memory beyond which a pass is refused.
 const MOST_BYTES: u64 = 16 << 30;
+
+/// Connections to light sources per camera path: all to the same place where there is one only.
+fn light_samples(scene: &Scene) -> u32 {
+    let kinds = scene.emitters.iter().map(|emitter| &emitter.kind);
+    let mut connected = kinds.filter(|kind| kind.can_be_connected());
+    match (connected.next(), connected.next()) {
+        (Some(EmitterKind::Area { .. }), None) | (_, Some(_)) => LIGHT_SAMPLES,
+        _ => 1,
+    }
+}
 
 impl Settings {
     /// Fills in the defaults.
@@ -191,8 +213,10 @@ impl Settings {
             photons_per_pass,
             beam_photons,
             gather_samples: options.gather_samples.unwrap_or(2),
-            surface_samples: options.surface_samples.unwrap_or(8),
-            light_samples: options.light_samples.unwrap_or(4),
+            surface_samples: options.surface_samples.unwrap_or(4),
+            light_samples: options.light_samples.unwrap_or_else(|| light_samples(scene)),
+            thin_from: options.thin_from.unwrap_or(2),
+            sampler: options.sampler.unwrap_or(Sampler::Sobol),
         };
         settings.check()?;
         Ok(settings)

@@ -13,7 +13,9 @@ use tpb_film::Ledger;
 use tpb_optics::{Stream, medium};
 use tpb_render::PassId;
 use tpb_scene::{IntegratorSpec, Plan, Scene, Span};
-use tpb_transport::{FreeFlight, Outcome, Photon, PhotonBatch, PhotonVisitor, SurfaceArrival};
+use tpb_transport::{
+    FreeFlight, Outcome, Photon, PhotonBatch, PhotonVisitor, Sampling, SurfaceArrival,
+};
 
 use crate::BeamLength;
 use crate::beam::{Attenuation, Beam, SurfacePhoton, visible_length};
@@ -40,6 +42,8 @@ pub struct PhotonTracer<'a> {
     pub integrator: IntegratorSpec,
     /// Where beams end.
     pub length: BeamLength,
+    /// How photons are drawn.
+    pub sampling: Sampling,
 }
 
 impl PhotonTracer<'_> {
@@ -47,8 +51,11 @@ impl PhotonTracer<'_> {
     /// leave is ordered by photon. Photons are cheap on surfaces, where each is met by the pixels
     /// around it only, and dear as beams, which cross the image.
     pub fn trace<const C: usize>(&self, id: PassId, count: u64, beam_photons: u64) -> Photons<C> {
-        let photons =
-            tpb_transport::PhotonTracer { scene: self.scene, integrator: self.integrator };
+        let photons = tpb_transport::PhotonTracer {
+            scene: self.scene,
+            integrator: self.integrator,
+            sampling: self.sampling,
+        };
         let batch = PhotonBatch { seed: id.seed, pass: id.index, count };
         let beam_photons = if self.plan.beams { beam_photons } else { 0 };
         // What beams of fewer photons carry more.

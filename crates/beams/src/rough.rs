@@ -70,8 +70,8 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             return;
         }
         let samples = f64::from(self.settings.light_samples);
-        for _ in 0..self.settings.light_samples {
-            let Some(point) = self.scene.sample_light(rng) else { return };
+        for nth in 0..self.settings.light_samples {
+            let Some(point) = self.sample_light(path, nth, rng) else { return };
             let Some(light) = self.scene.incident::<C>(&point, path.vertex.position) else {
                 continue;
             };

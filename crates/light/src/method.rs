@@ -4,7 +4,7 @@ use tpb_film::{Arrival, Ledger, TransientFilm};
 use tpb_optics::Spectrum;
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Plan, Scene, Transport};
-use tpb_transport::{PhotonBatch, PhotonTracer};
+use tpb_transport::{PhotonBatch, PhotonTracer, Sampling};
 
 use crate::connect::Connections;
 use crate::sorted::{Contribution, Sorted};
@@ -55,7 +55,7 @@ impl<'a, const C: usize> LightTracer<'a, C> {
 
     fn trace(&self, batch: PhotonBatch, unwarp: bool) -> (Vec<Connections<'a, C>>, Ledger) {
         let Self { scene, integrator, .. } = *self;
-        let photons = PhotonTracer { scene, integrator };
+        let photons = PhotonTracer { scene, integrator, sampling: Sampling::default() };
         photons.trace(batch, |_| Connections::new(scene, integrator, unwarp))
     }
 

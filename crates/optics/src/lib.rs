@@ -19,6 +19,7 @@ pub mod medium;
 pub mod microfacet;
 pub mod opl;
 pub mod phase;
+pub mod quasi;
 pub mod rng;
 pub mod spectrum;
 pub mod warp;

@@ -10,18 +10,45 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// A stream of uniform random numbers.
 #[derive(Clone, Debug)]
-pub struct Stream(Xoshiro256PlusPlus);
+pub struct Stream {
+    bits: Xoshiro256PlusPlus,
+    /// Numbers that come first, the last of them first.
+    lead: [f64; LONGEST_LEAD],
+    /// How many of them are left.
+    left: usize,
+}
+
+/// Numbers that [`Stream::lead`] takes at most.
+pub const LONGEST_LEAD: usize = 8;
 
 impl Stream {
     /// The stream of one item (a pixel, a photon) of one pass of a run with `seed`.
     pub fn new(seed: u64, pass: u64, item: u64) -> Self {
-        Self(Xoshiro256PlusPlus::seed_from_u64(mix(seed_of(seed, pass) ^ item)))
+        let bits = Xoshiro256PlusPlus::seed_from_u64(mix(seed_of(seed, pass) ^ item));
+        Self { bits, lead: [0.0; LONGEST_LEAD], left: 0 }
+    }
+
+    /// The next numbers are these, each in [0, 1); then it goes on as before. What was left of an
+    /// earlier lead is dropped.
+    ///
+    /// # Panics
+    /// For more than [`LONGEST_LEAD`].
+    #[inline]
+    pub fn lead(&mut self, numbers: &[f64]) {
+        self.left = numbers.len();
+        for (held, &number) in self.lead[..self.left].iter_mut().rev().zip(numbers) {
+            *held = number;
+        }
     }
 
     /// Uniform in [0, 1): 53 random bits.
     #[inline]
     pub fn uniform(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
+        if self.left > 0 {
+            self.left -= 1;
+            return self.lead[self.left];
+        }
+        (self.bits.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
     }
 
     /// A uniform index below `count` (at least 1).
@@ -56,6 +83,19 @@ mod tests {
         assert_eq!(draw(1, 2, 3).to_bits(), draw(1, 2, 3).to_bits());
         let others = [draw(2, 2, 3), draw(1, 3, 3), draw(1, 2, 4), draw(1, 3, 2), draw(3, 2, 1)];
         assert!(others.iter().all(|&u| u.to_bits() != draw(1, 2, 3).to_bits()));
+    }
+
+    #[test]
+    fn a_lead_comes_first_and_moves_nothing() {
+        let mut plain = Stream::new(1, 2, 3);
+        let mut led = plain.clone();
+        led.lead(&[0.1, 0.2, 0.3]);
+        assert_eq!([led.uniform(), led.uniform()], [0.1, 0.2]);
+        led.lead(&[0.4]);
+        assert_eq!(led.uniform().to_bits(), 0.4_f64.to_bits());
+        led.lead(&[0.5]);
+        led.lead(&[]);
+        assert_eq!(led.uniform().to_bits(), plain.uniform().to_bits());
     }
 
     #[test]

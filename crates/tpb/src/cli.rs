@@ -281,6 +281,14 @@ pub(crate) struct BeamArgs {
     /// Connections to light sources per camera ray
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) light_samples: Option<u32>,
+
+    /// Events from which photons that have lost power are thinned out
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) thin_from: Option<u32>,
+
+    /// Where photons start, and which points of lights are connected to
+    #[arg(long, value_enum, value_name = "SAMPLER")]
+    pub(crate) sampler: Option<SamplerArg>,
 }
 
 /// Options of the methods that trace photons.
@@ -348,6 +356,15 @@ pub(crate) enum TemporalArg {
     Exact,
     /// Evenly
     Even,
+}
+
+/// Where photons start, and which points of lights are connected to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SamplerArg {
+    /// Spread evenly: a scrambled Sobol sequence
+    Sobol,
+    /// Independent of one another
+    Independent,
 }
 
 #[cfg(test)]

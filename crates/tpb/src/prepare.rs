@@ -2,7 +2,7 @@
 
 use std::num::NonZero;
 
-use tpb_beams::{BeamLength, BeamOptions, KernelChoice, PhotonBeams, Temporal};
+use tpb_beams::{BeamLength, BeamOptions, KernelChoice, PhotonBeams, Sampler, Temporal};
 use tpb_light::{LightOptions, LightTracer};
 use tpb_path::{PathOptions, PathTracer};
 use tpb_render::Method;
@@ -11,7 +11,7 @@ use tpb_scene::{IntegratorSpec, MethodName, Plan};
 
 use crate::cli::{
     BeamArgs, BeamLengthArg, JobArgs, KernelArg, MethodArg, MethodArgs, PathArgs, PhotonArgs,
-    TemporalArg,
+    SamplerArg, TemporalArg,
 };
 use crate::failure::Failure;
 
@@ -168,5 +168,10 @@ fn beam_options(args: &BeamArgs, photons: &PhotonArgs) -> BeamOptions {
         gather_samples: args.gather_samples,
         surface_samples: args.surface_samples,
         light_samples: args.light_samples,
+        thin_from: args.thin_from,
+        sampler: args.sampler.map(|sampler| match sampler {
+            SamplerArg::Sobol => Sampler::Sobol,
+            SamplerArg::Independent => Sampler::Independent,
+        }),
     }
 }

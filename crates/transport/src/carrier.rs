@@ -61,6 +61,29 @@ pub fn roulette<const C: usize>(
     ledger: &mut Ledger,
 ) -> bool {
     let survival = (carried.max_channel() / start).min(LARGEST_SURVIVAL);
+    survive(carried, survival, rng, ledger)
+}
+
+/// Roulette of what has lost something only: survivors carry what they began with, as far as the
+/// largest channel tells, and what lost nothing survives.
+#[inline]
+pub(crate) fn thin<const C: usize>(
+    carried: &mut Spectrum<C>,
+    start: f64,
+    rng: &mut Stream,
+    ledger: &mut Ledger,
+) -> bool {
+    let survival = carried.max_channel() / start;
+    survival >= 1.0 || survive(carried, survival, rng, ledger)
+}
+
+#[inline]
+fn survive<const C: usize>(
+    carried: &mut Spectrum<C>,
+    survival: f64,
+    rng: &mut Stream,
+    ledger: &mut Ledger,
+) -> bool {
     let before = carried.luminance();
     if rng.uniform() >= survival {
         ledger.roulette_lost += before;

@@ -24,4 +24,4 @@ pub use photon::{Photon, SurfaceArrival};
 pub use surface::{
     Carrier, DiffuseLobe, Drawn, Encounter, Lobe, Response, RoughLobe, Towards, Turn,
 };
-pub use tracer::{PhotonBatch, PhotonTracer, PhotonVisitor};
+pub use tracer::{PhotonBatch, PhotonTracer, PhotonVisitor, Sampler, Sampling};

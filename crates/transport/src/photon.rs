@@ -6,7 +6,7 @@ use tpb_optics::{Spectrum, Stream};
 use tpb_scene::{Emission, Hit, IntegratorSpec, Scene, Vertex};
 
 use crate::DiffuseLobe;
-use crate::carrier::roulette;
+use crate::carrier::{roulette, thin};
 
 /// A photon: a share of the light, with one place, direction and time.
 #[derive(Clone, Copy, Debug)]
@@ -81,15 +81,22 @@ impl<const C: usize> Photon<C> {
         deep_enough
     }
 
-    /// Russian roulette, from `rr_depth` events on.
+    /// Russian roulette, from `rr_depth` events on; thinning before, from `thin_from` on.
     #[inline]
     pub(crate) fn survives(
         &mut self,
         limits: &IntegratorSpec,
+        thin_from: u32,
         rng: &mut Stream,
         ledger: &mut Ledger,
     ) -> bool {
-        self.events < limits.rr_depth || roulette(&mut self.power, self.emitted, rng, ledger)
+        if self.events >= limits.rr_depth {
+            roulette(&mut self.power, self.emitted, rng, ledger)
+        } else if self.events >= thin_from {
+            thin(&mut self.power, self.emitted, rng, ledger)
+        } else {
+            true
+        }
     }
 }
 
@@ -101,7 +108,7 @@ mod tests {
 
     /// As camera paths: from `rr_depth` events on.
     #[test]
-    fn roulette_starts_after_rr_depth_events() {
+    fn roulette_starts_after_rr_depth_events_and_thinning_before() {
         let limits = IntegratorSpec { rr_depth: 3, ..Default::default() };
         for events in 0..6 {
             let vertex = Vertex { position: DVec3::ZERO, primitive: None, region: Region::VACUUM };
@@ -116,8 +123,11 @@ mod tests {
                 emitted: 1.0,
             };
             let mut rng = Stream::new(1, 2, 3);
-            let survives = photon.survives(&limits, &mut rng, &mut Ledger::default());
-            assert_eq!(survives, events < limits.rr_depth, "{events}");
+            let mut ledger = Ledger::default();
+            for (thin_from, first) in [(u32::MAX, 3), (2, 2), (4, 3)] {
+                let survives = photon.survives(&limits, thin_from, &mut rng, &mut ledger);
+                assert_eq!(survives, events < first, "{events}");
+            }
         }
     }
 }

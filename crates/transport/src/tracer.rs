@@ -21,8 +21,10 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use tpb_film::Ledger;
-use tpb_optics::{Spectrum, Stream};
+use tpb_optics::quasi::{Points, TOGETHER};
+use tpb_optics::{Spectrum, Stream, seed_of};
 use tpb_scene::{Flight, Hit, IntegratorSpec, Scene, Vertex};
 
 use crate::carrier::absorb_on_surface;
@@ -30,6 +32,9 @@ use crate::{
     Carrier, Encounter, FreeFlight, Lobe, Outcome, Part, Photon, Response, RoughLobe,
     SurfaceArrival,
 };
+
+/// Of each photon so many numbers, from its emission on, are quasi-random.
+const LEAD: usize = 2 * TOGETHER;
 
 /// Photons per parallel task; the division does not depend on threads.
 const CHUNK: u64 = 512;
@@ -99,6 +104,36 @@ pub struct PhotonTracer<'a> {
     pub scene: &'a Scene,
     /// Depths.
     pub integrator: IntegratorSpec,
+    /// How photons are drawn.
+    pub sampling: Sampling,
+}
+
+/// Where photons start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sampler {
+    /// Independent of one another.
+    #[default]
+    Independent,
+    /// Spread evenly over emitters, directions and flights: a scrambled Sobol sequence.
+    Sobol,
+}
+
+/// How photons are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sampling {
+    /// Where they start.
+    pub sampler: Sampler,
+    /// From so many events on, photons that have lost power are thinned out, so that those left carry
+    /// what they began with; `u32::MAX`: roulette alone, from `rr_depth` on.
+    pub thin_from: u32,
+}
+
+impl Default for Sampling {
+    /// Independent photons and roulette alone.
+    fn default() -> Self {
+        Self { sampler: Sampler::default(), thin_from: u32::MAX }
+    }
 }
 
 impl PhotonTracer<'_> {
@@ -120,8 +155,12 @@ impl PhotonTracer<'_> {
                     visitor: visitor(photons.clone()),
                     ledger: Ledger::default(),
                 };
+                let points = Points::new(seed_of(seed, pass));
                 for index in photons {
                     let mut rng = Stream::new(seed, pass, index);
+                    if self.sampling.sampler == Sampler::Sobol {
+                        lead(points, index, &mut rng);
+                    }
                     walk.photon::<C>(index, 1.0 / count as f64, &mut rng);
                 }
                 (walk.visitor, walk.ledger)
@@ -134,6 +173,16 @@ impl PhotonTracer<'_> {
         });
         (visitors.collect(), ledger)
     }
+}
+
+/// A photon's first numbers: its emitter and place there, its direction, and how far it flies.
+#[inline]
+fn lead(points: Points, index: u64, rng: &mut Stream) {
+    let mut numbers = [0.0; LEAD];
+    for (set, of_set) in (0..).zip(numbers.chunks_exact_mut(TOGETHER)) {
+        of_set.copy_from_slice(&points.at(index, set, rng));
+    }
+    rng.lead(&numbers);
 }
 
 /// One chunk's walk.
@@ -149,7 +198,7 @@ impl<V> Walk<'_, V> {
     where
         V: PhotonVisitor<C>,
     {
-        let PhotonTracer { scene, integrator } = self.tracer;
+        let PhotonTracer { scene, integrator, sampling } = self.tracer;
         let Some(emission) = scene.emit::<C>(rng) else { return };
         let mut photon = Photon::new(scene, &emission, index, share);
         if photon.power.is_zero() {
@@ -157,7 +206,9 @@ impl<V> Walk<'_, V> {
         }
         self.ledger.emitted += photon.power.luminance();
         self.visitor.emission(&photon, rng);
-        while self.step(&mut photon, rng) && photon.survives(&integrator, rng, &mut self.ledger) {}
+        while self.step(&mut photon, rng)
+            && photon.survives(&integrator, sampling.thin_from, rng, &mut self.ledger)
+        {}
     }
 
     /// One flight and the event at its end; whether there is light left to go on.

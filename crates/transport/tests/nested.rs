@@ -12,7 +12,9 @@ use tpb_scene::{
     AssembleError, Bsdf, Dielectric, EmitterKind, EmitterPart, FilmSpec, FovAxis, IntegratorSpec,
     Medium, MediumBoundary, MediumId, PixelFormat, Primitive, Scene, SceneParts, Sensor, ShapePart,
 };
-use tpb_transport::{FreeFlight, Outcome, Photon, PhotonBatch, PhotonTracer, PhotonVisitor};
+use tpb_transport::{
+    FreeFlight, Outcome, Photon, PhotonBatch, PhotonTracer, PhotonVisitor, Sampling,
+};
 
 const INNER: f64 = 1.0;
 const OUTER: f64 = 1.2;
@@ -156,7 +158,7 @@ impl PhotonVisitor<1> for Watch {
 fn every_flight_in_a_glass_of_liquid_is_in_its_region_and_takes_its_time() {
     let scene = cup();
     let integrator = IntegratorSpec { max_depth: Some(60), ..IntegratorSpec::default() };
-    let tracer = PhotonTracer { scene: &scene, integrator };
+    let tracer = PhotonTracer { scene: &scene, integrator, sampling: Sampling::default() };
     let batch = PhotonBatch { seed: 4, pass: 0, count: 3000 };
     let (seen, ledger) = tracer.trace::<1, _>(batch, |_| Watch::default());
     assert!(ledger.closure().abs() < 1e-9, "{ledger:?}");

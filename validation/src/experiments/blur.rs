@@ -19,7 +19,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use tpb_beams::{BeamOptions, KernelChoice};
+use tpb_beams::{BeamOptions, KernelChoice, Sampler};
 use tpb_plot::{Axis, Chart, Mark, Series};
 use tpb_scene::TimeSpec;
 
@@ -100,6 +100,8 @@ impl Blur {
             radius_exponent: Some(0.0),
             photons_per_pass: Some(photons),
             gather_samples: Some(1),
+            // The exponents are those of independent photons.
+            sampler: Some(Sampler::Independent),
             ..BeamOptions::default()
         })
     }
@@ -314,7 +316,7 @@ fn target(name: String, expected: f64) -> Target {
 }
 
 /// Slope of ln|y| over ln x by least squares.
-fn slope(points: &[(f64, f64)]) -> f64 {
+pub(super) fn slope(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.abs().ln())).collect();
     let n = logs.len() as f64;
     let (x, y) = logs.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
@@ -322,14 +324,14 @@ fn slope(points: &[(f64, f64)]) -> f64 {
     above / logs.iter().map(|p| (p.0 - x) * (p.0 - x)).sum::<f64>()
 }
 
-fn variance(values: &[f64]) -> f64 {
+pub(super) fn variance(values: &[f64]) -> f64 {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0)
 }
 
 /// B θ − (B − 1) θ₋ᵢ.
-fn jackknife(of: &impl Fn(Option<usize>) -> f64, batches: usize) -> Vec<f64> {
+pub(super) fn jackknife(of: &impl Fn(Option<usize>) -> f64, batches: usize) -> Vec<f64> {
     let (n, whole) = (batches as f64, of(None));
     (0..batches).map(|batch| n * whole - (n - 1.0) * of(Some(batch))).collect()
 }

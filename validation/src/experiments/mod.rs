@@ -14,6 +14,7 @@ pub mod kernels;
 pub mod lens;
 mod marching;
 pub mod mirrors;
+pub mod progressive;
 pub mod refraction;
 pub mod samplers;
 mod screen;

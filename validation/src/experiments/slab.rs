@@ -25,7 +25,9 @@ use tpb_scene::{
     Bsdf, EmitterKind, EmitterPart, IntegratorSpec, MediumBoundary, MediumId, Scene, SceneParts,
     TimeSpec,
 };
-use tpb_transport::{FreeFlight, Outcome as End, Photon, PhotonBatch, PhotonTracer, PhotonVisitor};
+use tpb_transport::{
+    FreeFlight, Outcome as End, Photon, PhotonBatch, PhotonTracer, PhotonVisitor, Sampling,
+};
 
 use super::sights::{across, between, lamp};
 use crate::cube::Cube;
@@ -118,7 +120,11 @@ impl Slab {
     /// Shares of the light that leave, batch by batch.
     fn shares(self, context: &Context, photons: u64, leaving: &[Leaving]) -> Result<Batches> {
         let scene = self.lit(context)?;
-        let tracer = PhotonTracer { scene: &scene, integrator: self.integrator() };
+        let tracer = PhotonTracer {
+            scene: &scene,
+            integrator: self.integrator(),
+            sampling: Sampling::default(),
+        };
         let mut shares = Batches::new();
         for pass in 0..BATCHES {
             let batch = PhotonBatch { seed: context.seed, pass, count: photons };

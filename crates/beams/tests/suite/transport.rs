@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use tpb_beams::photons::PhotonTracer;
-use tpb_beams::{BeamLength, BeamOptions, KernelChoice, PhotonBeams, Temporal};
+use tpb_beams::{BeamLength, BeamOptions, KernelChoice, PhotonBeams, Sampler, Sampling, Temporal};
 use tpb_film::{Arrays, FilmOptions, Layout, TimeAxis, TransientFilm};
 use tpb_optics::{Rgb, Spectrum};
 use tpb_render::{Method, PassId, PassReport};
@@ -12,6 +12,8 @@ use tpb_scene::{
 };
 
 use crate::scenes;
+
+const SAMPLING: Sampling = Sampling { sampler: Sampler::Sobol, thin_from: 1 };
 
 /// Runs passes and develops the film.
 pub(crate) fn render(
@@ -103,7 +105,8 @@ fn everything(integrator: IntegratorSpec) -> Scene {
 fn ledger_closes<const C: usize>(integrator: IntegratorSpec, length: BeamLength) {
     let scene = everything(integrator);
     let plan = Plan::new(&scene, &integrator);
-    let tracer = PhotonTracer { scene: &scene, plan: &plan, integrator, length };
+    let tracer =
+        PhotonTracer { scene: &scene, plan: &plan, integrator, length, sampling: SAMPLING };
     let photons = tracer.trace::<C>(PassId { seed: 3, index: 1 }, 3000, 2000);
     let ledger = photons.ledger;
     assert!(ledger.closure().abs() < 1e-9, "{ledger:?}");
@@ -133,7 +136,13 @@ fn light_that_leaves_an_open_box_is_booked_as_escaped() {
     let scene = scenes::cornell_blocks(8);
     let integrator = scene.integrator;
     let plan = Plan::new(&scene, &integrator);
-    let tracer = PhotonTracer { scene: &scene, plan: &plan, integrator, length: BeamLength::Long };
+    let tracer = PhotonTracer {
+        scene: &scene,
+        plan: &plan,
+        integrator,
+        length: BeamLength::Long,
+        sampling: SAMPLING,
+    };
     let ledger = tracer.trace::<1>(PassId { seed: 3, index: 0 }, 3000, 3000).ledger;
     assert!(ledger.closure().abs() < 1e-9, "{ledger:?}");
     // A lamp of 0.16 m² and radiance 10 emits 1.6 π.

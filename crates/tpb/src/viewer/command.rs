@@ -70,7 +70,7 @@ fn differences(path: &str, old: &Value, new: &Value, changes: &mut Vec<String>) 
 }
 
 /// Options that the command line has a flag for, by their names in reports.
-const FLAGS: [(&str, &str); 13] = [
+const FLAGS: [(&str, &str); 15] = [
     ("kernel", "--kernel"),
     ("length", "--beam-length"),
     ("temporal", "--temporal"),
@@ -82,6 +82,8 @@ const FLAGS: [(&str, &str); 13] = [
     ("gather_samples", "--gather-samples"),
     ("surface_samples", "--surface-samples"),
     ("light_samples", "--light-samples"),
+    ("thin_from", "--thin-from"),
+    ("sampler", "--sampler"),
     ("photons_per_pass", "--photons"),
     ("samples_per_pass", "--samples-per-pass"),
 ];

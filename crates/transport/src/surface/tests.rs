@@ -10,7 +10,7 @@ use tpb_scene::{
 };
 
 use super::*;
-use crate::{FreeFlight, Outcome, Photon, PhotonBatch, PhotonTracer, PhotonVisitor};
+use crate::{FreeFlight, Outcome, Photon, PhotonBatch, PhotonTracer, PhotonVisitor, Sampling};
 
 const GLASS: Dielectric = Dielectric {
     interior_eta: 1.5,
@@ -84,7 +84,7 @@ fn light_behind_rough_glass_is_in_the_right_region_at_the_right_time() {
         );
         let integrator = IntegratorSpec { max_depth: Some(20), ..IntegratorSpec::default() };
         let batch = PhotonBatch { seed: 5, pass: 0, count: 4000 };
-        let tracer = PhotonTracer { scene: &scene, integrator };
+        let tracer = PhotonTracer { scene: &scene, integrator, sampling: Sampling::default() };
         let (seen, ledger) = tracer.trace::<1, _>(batch, |_| Watch::default());
         assert!(ledger.closure().abs() < 1e-9, "{ledger:?}");
         assert!(ledger.escaped > 0.25 * ledger.emitted && ledger.absorbed_on_surfaces > 0.0);

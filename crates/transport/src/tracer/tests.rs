@@ -77,7 +77,7 @@ impl<const C: usize> PhotonVisitor<C> for Seen {
 }
 
 fn trace<const C: usize>(scene: &Scene, integrator: IntegratorSpec) -> (Vec<Seen>, Ledger) {
-    let tracer = PhotonTracer { scene, integrator };
+    let tracer = PhotonTracer { scene, integrator, sampling: Sampling::default() };
     let batch = PhotonBatch { seed: 3, pass: 1, count: 3 * CHUNK + 5 };
     tracer.trace::<C, _>(batch, |_| Seen::default())
 }
