@@ -24,11 +24,18 @@ pub fn shipped_scene(name: &str) -> Scene {
 /// # Panics
 /// If the scene does not load: a broken checkout.
 pub fn sized_scene(name: &str, pixels: Option<usize>) -> Scene {
-    let overrides: Vec<Override> = pixels
-        .iter()
-        .flat_map(|n| ["width", "height"].map(|edge| format!("sensor.film.{edge}={n}")))
-        .map(|text| Override::parse(&text).expect("an override"))
-        .collect();
+    let edges = ["width", "height"].into_iter();
+    let edges = pixels.map(|n| edges.map(|edge| format!("sensor.film.{edge}={n}")).collect());
+    changed_scene(name, &edges.unwrap_or_else(Vec::new))
+}
+
+/// The same with `PATH=VALUE` changes.
+///
+/// # Panics
+/// If the scene does not load: a broken checkout, or a change of what it does not have.
+pub fn changed_scene(name: &str, changes: &[String]) -> Scene {
+    let overrides: Vec<Override> =
+        changes.iter().map(|text| Override::parse(text).expect("an override")).collect();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../validation/scenes");
     let file = folder.join(format!("{name}.json"));
     load_scene(&file, &overrides).expect("shipped scenes load").scene

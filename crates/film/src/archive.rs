@@ -1,7 +1,7 @@
 //! NumPy archives (`.npz`): arrays in the members of a ZIP file, streamed both ways.
 
 use std::fs::File;
-use std::io::{self, BufReader, Seek, Write};
+use std::io::{self, BufReader, BufWriter, Seek, Write};
 use std::path::Path;
 
 use npyz::{AutoSerialize, Deserialize, NpyFile, NpyHeader, Order, WriterBuilder};
@@ -13,6 +13,9 @@ use crate::FilmError;
 
 /// The ZIP format needs to know in advance of members beyond 4 GiB.
 const LARGE_BYTES: usize = 0xfff0_0000;
+
+/// How much is written at a time.
+const WRITE_BYTES: usize = 1 << 18;
 
 /// Whether members of an archive are compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,13 +57,16 @@ impl<W: Write + Seek> ArchiveWriter<W> {
             .large_file(size_of_val(values) >= LARGE_BYTES);
         let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
         self.zip.start_file(member_name(name), options)?;
+        // The archive checks and counts each write, and values are written one by one.
+        let mut buffer = BufWriter::with_capacity(WRITE_BYTES, &mut self.zip);
         let mut member = npyz::WriteOptions::new()
             .default_dtype()
             .shape(&shape)
-            .writer(&mut self.zip)
+            .writer(&mut buffer)
             .begin_nd()?;
         member.extend(values.iter().copied())?;
-        member.finish()
+        member.finish()?;
+        buffer.flush()
     }
 
     /// Ends the archive.

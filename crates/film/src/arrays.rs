@@ -7,13 +7,9 @@
 use std::fmt;
 use std::ops::Range;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use tpb_optics::opl::seconds_from_opl;
 use tpb_optics::spectrum::LUMINANCE;
-
-use crate::film::{Statistics, TransientFilm};
-use crate::stats::variance_factor;
 
 /// What the cells of [`Arrays::transient`] hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -114,10 +110,15 @@ impl Arrays {
             return;
         }
         let (bins, channels) = (self.bins, self.channels);
-        let cut = |cells: &[f32]| -> Vec<f32> {
-            let pixels = cells.chunks_exact(bins * channels);
-            let kept = pixels.flat_map(|p| &p[keep.start * channels..keep.end * channels]);
-            kept.copied().collect()
+        let cut = |cells: &mut Vec<f32>| {
+            let size = keep.len() * channels;
+            let count = cells.len() / (bins * channels);
+            for pixel in 0..count {
+                let from = (pixel * bins + keep.start) * channels;
+                cells.copy_within(from..from + size, pixel * size);
+            }
+            cells.truncate(count * size);
+            cells.shrink_to_fit();
         };
         for (pixel, cells) in self.transient.chunks_exact(bins * channels).enumerate() {
             for (bin, cell) in cells.chunks_exact(channels).enumerate() {
@@ -131,8 +132,8 @@ impl Arrays {
                 }
             }
         }
-        self.transient = cut(&self.transient);
-        self.variance = self.variance.as_deref().map(cut);
+        cut(&mut self.transient);
+        self.variance.as_mut().map(cut);
         self.opl_edges = self.opl_edges[keep.start..=keep.end].to_vec();
         self.bins = keep.len();
     }
@@ -153,52 +154,5 @@ pub(crate) fn luminance(cell: &[f32]) -> f64 {
             [r, g, b].iter().zip(LUMINANCE).map(|(&value, weight)| f64::from(value) * weight).sum()
         }
         _ => f64::from(cell[0]),
-    }
-}
-
-impl<const C: usize> TransientFilm<C> {
-    /// The arrays of the passes so far.
-    pub fn develop(&self) -> Arrays {
-        let layout = self.layout();
-        let Statistics { kept, mean, squares, steady_mean } = self.statistics();
-        let channels = self.output_channels();
-        let cells = if mean.is_empty() { 0 } else { layout.bins() + 2 };
-        let bins = layout.bins();
-        // Output channel → kept channel: itself, or the only one.
-        let source = |channel: usize| channel.min(kept - 1);
-
-        let cube = |statistics: &[f64], factor: f64| -> Vec<f32> {
-            let mut cube = vec![0.0; layout.pixels() * bins * channels];
-            if bins > 0 {
-                let pixels = cube.par_chunks_exact_mut(bins * channels);
-                pixels.zip(statistics.par_chunks_exact(cells * kept)).for_each(|(out, cells)| {
-                    let cells = cells[kept..].chunks_exact(kept);
-                    for (out, cell) in out.chunks_exact_mut(channels).zip(cells) {
-                        for (channel, out) in out.iter_mut().enumerate() {
-                            *out = (cell[source(channel)] * factor) as f32;
-                        }
-                    }
-                });
-            }
-            cube
-        };
-        let image = |statistics: &[f64], cells: usize, cell: usize| -> Vec<f64> {
-            let pixels = statistics.chunks_exact((cells * kept).max(1));
-            pixels.flat_map(|p| (0..channels).map(move |c| p[cell * kept + source(c)])).collect()
-        };
-        let factor = variance_factor(self.passes()).filter(|_| self.options().variance);
-        Arrays {
-            width: layout.width,
-            height: layout.height,
-            bins,
-            channels,
-            quantity: Quantity::BinEnergy,
-            opl_edges: layout.time.map_or_else(Vec::new, |time| time.edges()),
-            transient: cube(mean, 1.0),
-            variance: factor.filter(|_| bins > 0).map(|factor| cube(squares, factor)),
-            before: image(mean, cells, 0),
-            after: image(mean, cells, cells.saturating_sub(1)),
-            steady: image(steady_mean, 1, 0),
-        }
     }
 }

@@ -1,12 +1,13 @@
 //! The film: statistics over passes of all pixels and cells.
 //!
-//! A pass is one independent estimate of the whole image. It is rendered tile by tile into
-//! scratch and then added to the mean (and M2, if variance is asked for) of each cell. The steady
-//! image, the sum over a pixel's cells, has mean and M2 of its own, always. Memory is 8 bytes per
-//! cell, 16 with variance, and 16 per pixel and channel: with the f32 arrays that
-//! [`TransientFilm::develop`] makes, three times those arrays.
+//! A pass is one independent estimate of the whole image. It is rendered tile by tile into f64
+//! scratch and then added to the sum (and the squared deviations, if variance is asked for) of each
+//! cell that it reached: f32, rounded without bias (see `stats`). What arrives outside the window, and
+//! the steady image, the sum over a pixel's cells, are f64. [`TransientFilm::into_arrays`] makes the
+//! sums into the result where they are: memory is that of the arrays that leave the film, with
+//! variance and two bytes per bin more, and 32 bytes per pixel and channel.
 
-use std::ops::Range;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -14,9 +15,9 @@ use tpb_optics::Spectrum;
 
 use crate::FilmError;
 use crate::layout::{Clock, Layout};
-use crate::profile::Workspace;
-use crate::stats::{add_to_means, add_to_moments, variance_factor};
-use crate::tile::{Grain, Tile};
+use crate::part::{Part, Sizes, Statistics};
+use crate::stats::{Pass, variance_factor};
+use crate::tile::{BLOCK, Grain, Scratch, Tile};
 
 /// Which channels leave the film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,13 +50,19 @@ pub struct TransientFilm<const C: usize> {
     options: FilmOptions,
     passes: u64,
     non_finite: u64,
-    /// (pixel, cell, channel); empty without a time axis.
-    mean: Vec<f64>,
-    /// Like `mean`; empty without variance.
-    squares: Vec<f64>,
+    /// Sums over passes, (pixel, bin, channel); empty without a time axis.
+    sums: Vec<f32>,
+    /// Squared deviations, like `sums`; empty without variance.
+    squares: Vec<f32>,
+    /// (pixel, block of cells): the pass that last reached it; empty without variance.
+    reached: Vec<u32>,
+    /// Sums of what arrived before and after, (pixel, 2, channel); empty without a time axis.
+    outside: Vec<f64>,
     /// (pixel, channel).
     steady_mean: Vec<f64>,
     steady_squares: Vec<f64>,
+    /// As many as there were tiles at work at once.
+    scratch: Mutex<Vec<Scratch<C>>>,
 }
 
 impl<const C: usize> TransientFilm<C> {
@@ -65,29 +72,37 @@ impl<const C: usize> TransientFilm<C> {
     /// Those of [`Layout::new`], and [`FilmError::TooLarge`].
     pub fn new(layout: Layout, options: FilmOptions) -> Result<Self, FilmError> {
         layout.validate()?;
-        let zeros = |count: Option<usize>| -> Result<Vec<f64>, FilmError> {
-            let count = count.ok_or_else(|| layout.too_large())?;
-            let mut zeros = Vec::new();
-            zeros.try_reserve_exact(count).map_err(|_| layout.too_large())?;
-            zeros.resize(count, 0.0);
-            Ok(zeros)
-        };
-        let kept = Self::kept(options.output);
-        let per_pixel = layout.width.checked_mul(layout.height).and_then(|n| n.checked_mul(kept));
-        let stored = match layout.time {
-            None => Some(0),
-            Some(time) => time.bins.checked_add(2).and_then(|cells| cells.checked_mul(per_pixel?)),
-        };
+        let pixels = layout.width.checked_mul(layout.height).ok_or_else(|| layout.too_large())?;
+        // Far from overflow, if the cells of one pixel can be numbered.
+        if layout.bins() > isize::MAX as usize / 64 {
+            return Err(layout.too_large());
+        }
+        let sizes = Self::sizes(&layout, options);
         Ok(Self {
             layout,
             options,
             passes: 0,
             non_finite: 0,
-            mean: zeros(stored)?,
-            squares: zeros(if options.variance { stored } else { Some(0) })?,
-            steady_mean: zeros(per_pixel)?,
-            steady_squares: zeros(per_pixel)?,
+            sums: zeros(pixels, sizes.sums, &layout)?,
+            squares: zeros(pixels, sizes.squares, &layout)?,
+            reached: zeros(pixels, sizes.reached, &layout)?,
+            outside: zeros(pixels, sizes.outside, &layout)?,
+            steady_mean: zeros(pixels, sizes.steady, &layout)?,
+            steady_squares: zeros(pixels, sizes.steady, &layout)?,
+            scratch: Mutex::default(),
         })
+    }
+
+    /// Values of each kind per pixel.
+    fn sizes(layout: &Layout, options: FilmOptions) -> Sizes {
+        let kept = Self::kept(options.output);
+        let (sums, outside) = (layout.bins() * kept, 2 * kept);
+        let (squares, reached) =
+            if options.variance { (sums, (layout.bins() + 2).div_ceil(BLOCK)) } else { (0, 0) };
+        match layout.time {
+            Some(_) => Sizes { sums, squares, reached, outside, steady: kept },
+            None => Sizes { sums: 0, squares: 0, reached: 0, outside: 0, steady: kept },
+        }
     }
 
     /// Channels that the statistics keep.
@@ -130,32 +145,32 @@ impl<const C: usize> TransientFilm<C> {
         render: impl Fn(&mut Tile<'_, C>) -> S + Sync,
     ) -> Vec<S> {
         self.passes += 1;
-        let n = self.passes;
+        let pass = Pass::new(self.passes);
         let (layout, options) = (self.layout, self.options);
-        let kept = Self::kept(options.output);
+        let sizes = Self::sizes(&layout, options);
         let clock = layout.time.map(Clock::new);
-        let cells = clock.map_or(1, |clock| clock.cells());
-        let parts =
-            self.parts(self.tile_edge(grain), if clock.is_some() { cells * kept } else { 0 });
-        let scratch = || (Vec::<Spectrum<C>>::new(), Workspace::<C>::default());
+        let pool = std::mem::take(&mut self.scratch);
+        let parts = self.parts(self.tile_edge(grain), sizes);
         let results: Vec<(S, u64)> = parts
             .into_par_iter()
-            .map_init(scratch, |(buffer, workspace), part| {
+            .map(|part| {
+                let free = lock(&pool).pop();
+                let scratch = &mut free.unwrap_or_default();
                 let area = (part.columns.clone(), part.rows.clone());
-                buffer.clear();
-                buffer.resize(area.0.len() * area.1.len() * cells, Spectrum::ZERO);
-                let mut tile =
-                    Tile::new(area, layout.width, clock, options.unwarp, buffer, workspace);
+                scratch.prepare(area.0.len() * area.1.len(), clock);
+                let mut tile = Tile::new(area, layout.width, clock, options.unwarp, scratch);
                 let result = render(&mut tile);
                 let non_finite = tile.non_finite();
-                if kept == C {
-                    part.add(buffer, cells, |cell: &Spectrum<C>| cell.0, n);
+                if Self::kept(options.output) == C {
+                    part.add(scratch, sizes, |cell: &Spectrum<C>| cell.0, pass);
                 } else {
-                    part.add(buffer, cells, |cell: &Spectrum<C>| [cell.luminance()], n);
+                    part.add(scratch, sizes, |cell: &Spectrum<C>| [cell.luminance()], pass);
                 }
+                lock(&pool).push(std::mem::take(scratch));
                 (result, non_finite)
             })
             .collect();
+        self.scratch = pool;
         self.non_finite += results.iter().map(|r| r.1).sum::<u64>();
         results.into_iter().map(|r| r.0).collect()
     }
@@ -166,13 +181,15 @@ impl<const C: usize> TransientFilm<C> {
         grain.edge(&self.layout, cells * size_of::<Spectrum<C>>())
     }
 
-    /// The statistics by tiles of `edge` pixels, `stored` cells of each pixel being kept.
-    fn parts(&mut self, edge: usize, stored: usize) -> Vec<Part<'_>> {
+    /// The statistics by tiles of `edge` pixels.
+    fn parts(&mut self, edge: usize, sizes: Sizes) -> Vec<Part<'_>> {
         let Layout { width, height, .. } = self.layout;
-        let kept = Self::kept(self.options.output);
-        let mut rest = RowPart {
-            mean: &mut self.mean,
+        let mut rest = Statistics {
+            first: 0,
+            sums: &mut self.sums,
             squares: &mut self.squares,
+            reached: &mut self.reached,
+            outside: &mut self.outside,
             steady_mean: &mut self.steady_mean,
             steady_squares: &mut self.steady_squares,
         };
@@ -186,8 +203,7 @@ impl<const C: usize> TransientFilm<C> {
             }));
             for _ in rows {
                 for part in &mut parts[first..] {
-                    let pixels = part.columns.len();
-                    part.statistics.push(rest.split_off(pixels * stored, pixels * kept));
+                    part.statistics.push(rest.split_off(part.columns.len(), sizes));
                 }
             }
         }
@@ -223,95 +239,48 @@ impl<const C: usize> TransientFilm<C> {
         }
     }
 
-    /// Channels of the statistics, and the raw statistics, for [`crate::Arrays`].
-    pub(crate) fn statistics(&self) -> Statistics<'_> {
-        Statistics {
+    /// The raw statistics, for [`crate::Arrays`].
+    pub(crate) fn raw(&self) -> Raw<'_> {
+        Raw {
             kept: Self::kept(self.options.output),
-            mean: &self.mean,
+            sums: &self.sums,
             squares: &self.squares,
+            reached: &self.reached,
+            outside: &self.outside,
             steady_mean: &self.steady_mean,
         }
+    }
+
+    /// Takes sums and squared deviations out.
+    pub(crate) fn take(&mut self) -> (Vec<f32>, Vec<f32>) {
+        (std::mem::take(&mut self.sums), std::mem::take(&mut self.squares))
     }
 }
 
 /// Borrowed statistics.
-pub(crate) struct Statistics<'a> {
+pub(crate) struct Raw<'a> {
     pub(crate) kept: usize,
-    pub(crate) mean: &'a [f64],
-    pub(crate) squares: &'a [f64],
+    pub(crate) sums: &'a [f32],
+    pub(crate) squares: &'a [f32],
+    pub(crate) reached: &'a [u32],
+    pub(crate) outside: &'a [f64],
     pub(crate) steady_mean: &'a [f64],
 }
 
-/// The statistics of one tile.
-struct Part<'a> {
-    columns: Range<usize>,
-    rows: Range<usize>,
-    /// Row by row.
-    statistics: Vec<RowPart<'a>>,
+/// What is in the pool is sound, whatever happened to others.
+fn lock<T>(pool: &Mutex<T>) -> MutexGuard<'_, T> {
+    pool.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The statistics of one row of a tile.
-struct RowPart<'a> {
-    mean: &'a mut [f64],
-    squares: &'a mut [f64],
-    steady_mean: &'a mut [f64],
-    steady_squares: &'a mut [f64],
-}
-
-impl Part<'_> {
-    /// Adds pass `n`; `keep` makes the kept channels of a cell.
-    fn add<const C: usize, const K: usize>(
-        self,
-        buffer: &[Spectrum<C>],
-        cells: usize,
-        keep: impl Fn(&Spectrum<C>) -> [f64; K] + Copy,
-        n: u64,
-    ) {
-        let rows = buffer.chunks_exact(self.columns.len() * cells);
-        for (row, buffer) in self.statistics.into_iter().zip(rows) {
-            row.add(buffer, cells, keep, n);
-        }
-    }
-}
-
-impl<'a> RowPart<'a> {
-    /// Takes the first cells and pixels off.
-    fn split_off(&mut self, cells: usize, steady: usize) -> RowPart<'a> {
-        let take = "tiles cover the film";
-        let squares = if self.squares.is_empty() { 0 } else { cells };
-        RowPart {
-            mean: self.mean.split_off_mut(..cells).expect(take),
-            squares: self.squares.split_off_mut(..squares).expect(take),
-            steady_mean: self.steady_mean.split_off_mut(..steady).expect(take),
-            steady_squares: self.steady_squares.split_off_mut(..steady).expect(take),
-        }
-    }
-
-    /// Adds pass `n`; `keep` makes the kept channels of a cell.
-    fn add<const C: usize, const K: usize>(
-        self,
-        buffer: &[Spectrum<C>],
-        cells: usize,
-        keep: impl Fn(&Spectrum<C>) -> [f64; K] + Copy,
-        n: u64,
-    ) {
-        if !self.mean.is_empty() {
-            let values = buffer.iter().map(keep);
-            if self.squares.is_empty() {
-                add_to_means(self.mean, values, n);
-            } else {
-                add_to_moments(self.mean, self.squares, values, n);
-            }
-        }
-        let sums = buffer.chunks_exact(cells).map(|pixel| {
-            let mut sum = [0.0; K];
-            for cell in pixel {
-                for (sum, value) in sum.iter_mut().zip(keep(cell)) {
-                    *sum += value;
-                }
-            }
-            sum
-        });
-        add_to_moments(self.steady_mean, self.steady_squares, sums, n);
-    }
+/// Zeros for all pixels. They take no memory until they are written to, where the system can do
+/// that.
+fn zeros<T: bytemuck::Zeroable>(
+    pixels: usize,
+    per_pixel: usize,
+    layout: &Layout,
+) -> Result<Vec<T>, FilmError> {
+    let count =
+        pixels.checked_mul(per_pixel).filter(|&n| n <= isize::MAX as usize / size_of::<T>());
+    let zeros = count.map(bytemuck::allocation::try_zeroed_vec);
+    zeros.and_then(Result::ok).ok_or_else(|| layout.too_large())
 }

@@ -39,7 +39,7 @@ impl<const C: usize> Default for Workspace<C> {
 }
 
 /// Adds `energy` to `cells` (all cells of one pixel); profile times are `shift` later than the
-/// clock's. On `Err` nothing was added.
+/// clock's. Returns the cells that it may have changed, at least one. On `Err` nothing was added.
 pub(crate) fn spread<const C: usize>(
     profile: &TemporalProfile<'_, C>,
     energy: Spectrum<C>,
@@ -47,13 +47,14 @@ pub(crate) fn spread<const C: usize>(
     clock: &Clock,
     cells: &mut [Spectrum<C>],
     workspace: &mut Workspace<C>,
-) -> Result<(), NotFinite> {
+) -> Result<Range<usize>, NotFinite> {
     match *profile {
         TemporalProfile::Uniform { start, end } => {
             let Some(span) = Span::new(start - shift, end - shift)? else {
                 return instant(start - shift, energy, clock, cells);
             };
             uniform(span, energy, clock, cells);
+            Ok(span.cells(clock))
         }
         TemporalProfile::Exponential { start, end, depth } => {
             if depth.0.iter().any(|d| d.is_nan()) {
@@ -67,6 +68,7 @@ pub(crate) fn spread<const C: usize>(
                     exponential(span, depth[channel], energy[channel], channel, clock, cells);
                 }
             }
+            Ok(span.cells(clock))
         }
         TemporalProfile::ExponentialTail { start, rate } => {
             let start = start - shift;
@@ -74,36 +76,40 @@ pub(crate) fn spread<const C: usize>(
             if !start.is_finite() || !(0..C).all(decays) {
                 return Err(NotFinite);
             }
+            let mut end = clock.cell(start) + 1;
             for channel in 0..C {
                 if energy[channel] != 0.0 {
-                    tail(start, rate[channel], energy[channel], channel, clock, cells);
+                    end =
+                        end.max(tail(start, rate[channel], energy[channel], channel, clock, cells));
                 }
             }
+            Ok(clock.cell(start)..end)
         }
         TemporalProfile::General { start, end, breaks, density } => {
             if Span::new(start, end)?.is_none() {
                 return instant(start - shift, energy, clock, cells);
             }
             let given = (start, end, breaks);
-            return general(given, density, energy, shift, clock, cells, workspace);
+            general(given, density, energy, shift, clock, cells, workspace)?;
+            Ok(clock.cell(start - shift)..clock.cell(end - shift) + 1)
         }
     }
-    Ok(())
 }
 
-/// Adds an instant.
+/// Adds an instant; returns its cell.
 #[inline]
 pub(crate) fn instant<const C: usize>(
     opl: f64,
     energy: Spectrum<C>,
     clock: &Clock,
     cells: &mut [Spectrum<C>],
-) -> Result<(), NotFinite> {
+) -> Result<Range<usize>, NotFinite> {
     if !opl.is_finite() {
         return Err(NotFinite);
     }
-    cells[clock.cell(opl)] += energy;
-    Ok(())
+    let cell = clock.cell(opl);
+    cells[cell] += energy;
+    Ok(cell..cell + 1)
 }
 
 /// A finite interval of positive length.
@@ -230,7 +236,7 @@ fn exponential<const C: usize>(
     }
 }
 
-/// One channel of an exponential tail.
+/// One channel of an exponential tail; returns the end of the cells that it changed.
 fn tail<const C: usize>(
     start: f64,
     rate: f64,
@@ -238,7 +244,7 @@ fn tail<const C: usize>(
     channel: usize,
     clock: &Clock,
     cells: &mut [Spectrum<C>],
-) {
+) -> usize {
     let first = clock.cell(start);
     let (after, inner) = cells.split_last_mut().expect("a pixel has cells");
     let mut decay =
@@ -250,10 +256,11 @@ fn tail<const C: usize>(
             decay.absorb_bin()
         };
         if decay.survival == 0.0 {
-            return;
+            return cell + 1;
         }
     }
     after[channel] += decay.survival;
+    cells.len()
 }
 
 fn general<const C: usize>(

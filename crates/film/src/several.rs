@@ -5,7 +5,7 @@ use tpb_optics::Spectrum;
 
 use crate::arrival::{Arrival, TemporalProfile};
 use crate::layout::Clock;
-use crate::tile::Tile;
+use crate::tile::{BLOCK, Tile};
 
 /// Instants at once.
 #[derive(Clone, Copy, Debug)]
@@ -183,6 +183,11 @@ impl<const C: usize> Tile<'_, C> {
     /// Adds energies to cells.
     #[inline(always)]
     fn add(&mut self, cells: &[u32; LANES], energy: &[[f64; LANES]; C]) {
+        if self.marking {
+            for cell in cells {
+                self.marks[*cell as usize / BLOCK] = 1;
+            }
+        }
         for lane in 0..LANES {
             let cell = &mut self.cells[cells[lane] as usize];
             for channel in 0..C {

@@ -1,8 +1,9 @@
 //! A tile of pixels during one pass: where integrators deposit.
 //!
-//! A tile is a rectangle of pixels with a zeroed f64 buffer of all their cells. Tiles share nothing,
-//! so passes run in parallel without atomics, and their division depends on the film and the
-//! method's [`Grain`] alone, so that results do not depend on threads.
+//! A tile is a rectangle of pixels with a zeroed f64 buffer of all their cells, and a mark for each
+//! block of cells that a deposit reached. Tiles share nothing, so passes run in parallel without
+//! atomics, and their division depends on the film and the method's [`Grain`] alone, so that results
+//! do not depend on threads.
 
 use std::ops::Range;
 
@@ -10,7 +11,13 @@ use tpb_optics::Spectrum;
 
 use crate::arrival::Arrival;
 use crate::layout::{Clock, Layout};
-use crate::profile::{Workspace, instant, spread};
+use crate::profile::{NotFinite, Workspace, instant, spread};
+
+/// Cells that share a mark.
+pub(crate) const BLOCK: usize = 16;
+
+/// Pixels of fewer cells are visited whole: finding out which of them were reached is dearer.
+const FEW_CELLS: usize = 512;
 
 /// Pixels along a tile's edge at most.
 const MOST_PIXELS: usize = 64;
@@ -25,11 +32,12 @@ pub enum Grain {
 }
 
 impl Grain {
-    /// Scratch of one tile stays within this many bytes, if a pixel does.
-    fn scratch_bytes(self) -> usize {
+    /// Scratch of one tile stays within this many bytes, if a pixel does; of coarse tiles on a film of
+    /// `film` bytes, within a part of them.
+    fn scratch_bytes(self, film: usize) -> usize {
         match self {
             Self::Fine => 256 << 10,
-            Self::Coarse => 8 << 20,
+            Self::Coarse => (8 << 20).max(film / 64),
         }
     }
 
@@ -43,9 +51,48 @@ impl Grain {
 
     /// Pixels along a tile's edge.
     pub(crate) fn edge(self, layout: &Layout, bytes_per_pixel: usize) -> usize {
-        let fitting = self.scratch_bytes() / bytes_per_pixel.max(1);
+        let film = layout.pixels().saturating_mul(bytes_per_pixel) / 2;
+        let fitting = self.scratch_bytes(film) / bytes_per_pixel.max(1);
         let pixels = fitting.min(layout.pixels() / self.least_tiles());
         pixels.isqrt().clamp(1, MOST_PIXELS)
+    }
+}
+
+/// The cells of a tile, kept from tile to tile and from pass to pass; all zero in between.
+pub(crate) struct Scratch<const C: usize> {
+    /// (pixel, cell), `stride` cells per pixel.
+    cells: Vec<Spectrum<C>>,
+    /// (pixel, block); not used without a time axis.
+    marks: Vec<u8>,
+    stride: usize,
+    workspace: Workspace<C>,
+}
+
+impl<const C: usize> Default for Scratch<C> {
+    fn default() -> Self {
+        let workspace = Workspace::default();
+        Self { cells: Vec::new(), marks: Vec::new(), stride: 1, workspace }
+    }
+}
+
+impl<const C: usize> Scratch<C> {
+    /// Room for so many pixels.
+    pub(crate) fn prepare(&mut self, pixels: usize, clock: Option<Clock>) {
+        self.stride = clock.map_or(1, |clock| clock.cells().next_multiple_of(BLOCK));
+        self.cells.resize(pixels * self.stride, Spectrum::ZERO);
+        self.marks.clear();
+        self.marks.resize(pixels * self.stride.div_ceil(BLOCK), u8::from(!self.marks_cells()));
+    }
+
+    /// Whether deposits mark blocks; else all are marked from the start.
+    fn marks_cells(&self) -> bool {
+        self.stride > FEW_CELLS
+    }
+
+    /// Cells and marks of each pixel.
+    pub(crate) fn pixels(&mut self) -> impl Iterator<Item = (&mut [Spectrum<C>], &mut [u8])> {
+        let cells = self.cells.chunks_exact_mut(self.stride);
+        cells.zip(self.marks.chunks_exact_mut(self.stride.div_ceil(BLOCK)))
     }
 }
 
@@ -59,22 +106,26 @@ pub struct Tile<'a, const C: usize> {
     pub(crate) unwarp: bool,
     pub(crate) cells_per_pixel: usize,
     pub(crate) cells: &'a mut [Spectrum<C>],
+    pub(crate) marks: &'a mut [u8],
+    /// Whether deposits have to mark what they reach.
+    pub(crate) marking: bool,
     workspace: &'a mut Workspace<C>,
     non_finite: u64,
 }
 
 impl<'a, const C: usize> Tile<'a, C> {
-    /// `cells` are those of the pixels in `columns` and `rows` of a film of `width` columns, row by
-    /// row, all zero.
+    /// `scratch` is [prepared](Scratch::prepare) for the pixels in `columns` and `rows` of a film of
+    /// `width` columns.
     pub(crate) fn new(
         (columns, rows): (Range<usize>, Range<usize>),
         width: usize,
         clock: Option<Clock>,
         unwarp: bool,
-        cells: &'a mut [Spectrum<C>],
-        workspace: &'a mut Workspace<C>,
+        scratch: &'a mut Scratch<C>,
     ) -> Self {
-        let cells_per_pixel = clock.map_or(1, |clock| clock.cells());
+        let marking = scratch.marks_cells();
+        let Scratch { cells, marks, stride, workspace } = scratch;
+        let cells_per_pixel = *stride;
         Self {
             columns,
             rows,
@@ -83,6 +134,8 @@ impl<'a, const C: usize> Tile<'a, C> {
             unwarp,
             cells_per_pixel,
             cells,
+            marks,
+            marking,
             workspace,
             non_finite: 0,
         }
@@ -149,11 +202,11 @@ impl<'a, const C: usize> Tile<'a, C> {
             return;
         }
         let first = place * self.cells_per_pixel;
-        let cells = &mut self.cells[first..first + self.cells_per_pixel];
         let Some(clock) = &self.clock else {
-            cells[0] += energy;
+            self.cells[first] += energy;
             return;
         };
+        let cells = &mut self.cells[first..first + clock.cells()];
         let shift = if self.unwarp { unwarp_opl } else { 0.0 };
         let added = match arrival {
             Arrival::Instant(opl) => instant(opl - shift, energy, clock, cells),
@@ -161,7 +214,14 @@ impl<'a, const C: usize> Tile<'a, C> {
                 spread(profile, energy, shift, clock, cells, self.workspace)
             }
         };
-        self.non_finite += u64::from(added.is_err());
+        match added {
+            Ok(_) if !self.marking => {}
+            Ok(reached) => {
+                let blocks = (first + reached.start) / BLOCK..=(first + reached.end - 1) / BLOCK;
+                self.marks[blocks].fill(1);
+            }
+            Err(NotFinite) => self.non_finite += 1,
+        }
     }
 
     /// Whether times are counted from the first surface that is not null.

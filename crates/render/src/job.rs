@@ -130,8 +130,7 @@ impl FilmSetup {
         &self,
         film: TransientFilm<C>,
     ) -> Result<(Arrays, PulseReport), RenderError> {
-        let mut arrays = film.develop();
-        drop(film);
+        let mut arrays = film.into_arrays();
         if self.pulse == Pulse::Delta {
             return Ok((arrays, EXACT));
         }

@@ -20,7 +20,11 @@ fn spread_on_axis<const C: usize>(
     if result.is_err() {
         assert!(cells.iter().all(|cell| cell.is_zero()), "a refused contribution left a trace");
     }
-    result.map(|()| cells)
+    result.map(|changed| {
+        let outside = |cell: &usize| !changed.contains(cell);
+        assert!((0..cells.len()).filter(outside).all(|cell| cells[cell].is_zero()), "{changed:?}");
+        cells
+    })
 }
 
 /// Cells of a single-channel profile of unit energy.
