@@ -52,20 +52,20 @@ impl<'a> Statistics<'a> {
     pub(crate) fn split_off(&mut self, pixels: usize, sizes: Sizes) -> Statistics<'a> {
         let first = self.first;
         self.first += pixels * sizes.sums;
+        let cover = "tiles cover the film";
         Statistics {
             first,
-            sums: front(&mut self.sums, pixels * sizes.sums),
-            squares: front(&mut self.squares, pixels * sizes.squares),
-            reached: front(&mut self.reached, pixels * sizes.reached),
-            outside: front(&mut self.outside, pixels * sizes.outside),
-            steady_mean: front(&mut self.steady_mean, pixels * sizes.steady),
-            steady_squares: front(&mut self.steady_squares, pixels * sizes.steady),
+            sums: self.sums.split_off_mut(..pixels * sizes.sums).expect(cover),
+            squares: self.squares.split_off_mut(..pixels * sizes.squares).expect(cover),
+            reached: self.reached.split_off_mut(..pixels * sizes.reached).expect(cover),
+            outside: self.outside.split_off_mut(..pixels * sizes.outside).expect(cover),
+            steady_mean: self.steady_mean.split_off_mut(..pixels * sizes.steady).expect(cover),
+            steady_squares: self
+                .steady_squares
+                .split_off_mut(..pixels * sizes.steady)
+                .expect(cover),
         }
     }
-}
-
-fn front<'a, T>(values: &mut &'a mut [T], count: usize) -> &'a mut [T] {
-    values.split_off_mut(..count).expect("tiles cover the film")
 }
 
 impl Part<'_> {

@@ -47,12 +47,15 @@ fn rounding_is_to_a_neighbour_and_without_bias() {
     }
 }
 
+/// A name, the value of each pass, and how many roundings of the whole sum all of them equal at most.
+type Kind<'a> = (&'a str, &'a dyn Fn(u64) -> f64, f64);
+
 /// The bound of the module's text, times six (false alarms 2e-9), over 10^5 passes of every kind.
 #[test]
 fn sums_of_many_passes_keep_the_stated_accuracy() {
     let n = 100_000;
     let uniform = |i: u64| Stream::new(1, 2, i).uniform();
-    let kinds: [(&str, &dyn Fn(u64) -> f64, f64); 4] = [
+    let kinds: [Kind<'_>; 4] = [
         ("constant", &|_| 0.1, (n as f64 / 3.0).sqrt()),
         ("uniform", &uniform, (n as f64 / 3.0).sqrt()),
         // A first pass a thousand times as bright as all others together.

@@ -135,13 +135,13 @@ fn cells_that_a_pass_does_not_reach_are_as_if_it_added_nothing() {
     let options = FilmOptions { variance: true, ..FilmOptions::default() };
     let layout = Layout::new(3, 2, Some(time)).unwrap();
     let mut film = TransientFilm::<1>::new(layout, options).unwrap();
-    let passes = 40;
-    let mut values = vec![vec![0.0; passes]; 6 * bins];
+    let passes = 40_u64;
+    let mut values = vec![vec![0.0; passes as usize]; 6 * bins];
     let mut given = 0.0;
     for pass in 0..passes {
         let hits: Vec<_> = (0..6_usize)
             .flat_map(|pixel| {
-                let mut rng = Stream::new(5, pass as u64, pixel as u64);
+                let mut rng = Stream::new(5, pass, pixel as u64);
                 // The ends of the axis, the ends of blocks, and a bin that is often hit.
                 let bins = [0, 14, 15, 16, 30, 31, 999].map(|bin| (bin, rng.index(3) == 0));
                 let bins: Vec<_> = bins.into_iter().filter_map(|b| b.1.then_some(b.0)).collect();
@@ -160,7 +160,7 @@ fn cells_that_a_pass_does_not_reach_are_as_if_it_added_nothing() {
             }
         });
         for (hit, (pixel, bin)) in hits.into_iter().enumerate() {
-            values[pixel * bins + bin][pass] += energy(hit);
+            values[pixel * bins + bin][pass as usize] += energy(hit);
             given += energy(hit);
         }
     }
