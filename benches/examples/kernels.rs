@@ -9,10 +9,10 @@ use std::num::NonZeroU32;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
-use tpb_beams::BeamLength;
 use tpb_beams::kernel1d::Kernel1d;
 use tpb_beams::kernel2d::Kernel2d;
 use tpb_beams::photons::PhotonTracer;
+use tpb_beams::{BeamLength, Sampling};
 use tpb_benches::gathers::Gathers;
 use tpb_benches::{film_of, one_thread, shipped_scene};
 use tpb_lanes::Instructions;
@@ -79,7 +79,8 @@ fn photons(seed: u64) -> Pass {
     let plan = Plan::new(&scene, &integrator);
     Box::new(move |index| {
         let length = BeamLength::Long;
-        let tracer = PhotonTracer { scene: &scene, plan: &plan, integrator, length };
+        let (scene, plan, sampling) = (&scene, &plan, Sampling::default());
+        let tracer = PhotonTracer { scene, plan, integrator, length, sampling };
         tracer.trace::<1>(PassId { seed, index }, PHOTONS, PHOTONS).beams.len() as u64
     })
 }

@@ -11,7 +11,7 @@
 
 use cpu_time::ProcessTime;
 use tpb_beams::photons::PhotonTracer;
-use tpb_beams::{BeamLength, BeamOptions, PhotonBeams};
+use tpb_beams::{BeamLength, BeamOptions, PhotonBeams, Sampling};
 use tpb_benches::{one_thread, shipped_scene};
 use tpb_path::{PathOptions, PathTracer};
 use tpb_render::{FilmSetup, Method, PassId, PassReport, RenderOptions};
@@ -83,7 +83,8 @@ fn timed<const C: usize>(scene: &Scene, method: &impl Method<C>) -> (f64, Vec<Pa
 /// fills all of it.
 fn photons<const C: usize>(scene: &Scene) -> f64 {
     let (plan, integrator) = (&Plan::new(scene, &scene.integrator), scene.integrator);
-    let tracer = PhotonTracer { scene, plan, integrator, length: BeamLength::Long };
+    let (length, sampling) = (BeamLength::Long, Sampling::default());
+    let tracer = PhotonTracer { scene, plan, integrator, length, sampling };
     let start = ProcessTime::now();
     let traced = tracer.trace::<C>(PassId { seed: 1, index: 0 }, PHOTONS, PHOTONS);
     traced.beams.len() as f64 / start.elapsed().as_secs_f64() / 1e6

@@ -25,8 +25,9 @@ pub fn shipped_scene(name: &str) -> Scene {
 /// If the scene does not load: a broken checkout.
 pub fn sized_scene(name: &str, pixels: Option<usize>) -> Scene {
     let edges = ["width", "height"].into_iter();
-    let edges = pixels.map(|n| edges.map(|edge| format!("sensor.film.{edge}={n}")).collect());
-    changed_scene(name, &edges.unwrap_or_else(Vec::new))
+    let edges: Option<Vec<_>> =
+        pixels.map(|n| edges.map(|edge| format!("sensor.film.{edge}={n}")).collect());
+    changed_scene(name, &edges.unwrap_or_default())
 }
 
 /// The same with `PATH=VALUE` changes.
