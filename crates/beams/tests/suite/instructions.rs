@@ -52,8 +52,8 @@ fn every_machine_gives_the_same_bits() {
         kernel: Some(kernel),
         temporal: Some(temporal),
         radius: Some(0.1),
-        photons_per_pass: Some(400),
-        beam_photons: Some(400),
+        photons_per_pass: Some(600),
+        beam_photons: Some(600),
         gather_samples: Some(1),
         surface_samples: Some(1),
         ..BeamOptions::default()
@@ -71,7 +71,7 @@ fn every_machine_gives_the_same_bits() {
     // The 3D kernel is evaluated pair by pair.
     check::<1>(
         &scene,
-        &BeamOptions { photons_per_pass: Some(100), beam_photons: Some(100), ..ways[3].clone() },
+        &BeamOptions { photons_per_pass: Some(150), beam_photons: Some(150), ..ways[3].clone() },
         true,
     );
     let mirror = Reflector::Mirror(Rgb::splat(0.9));
