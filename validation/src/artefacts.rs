@@ -50,6 +50,15 @@ pub(crate) fn leave(record: &Record, context: &Context) -> Result<Vec<PathBuf>> 
     Ok(files)
 }
 
+/// Writes a chart of an experiment into its folder.
+pub(crate) fn leave_chart(context: &Context, name: &str, file: &str, chart: &Chart) -> Result<()> {
+    let svg = chart.svg((900, 520)).map_err(|e| ValidationError::unusable("chart", e))?;
+    let folder = context.out.join(name.replace('/', "-"));
+    fs::create_dir_all(&folder).map_err(|error| ValidationError::io(&folder, error))?;
+    let path = folder.join(file);
+    fs::write(&path, svg).map_err(|error| ValidationError::io(&path, error))
+}
+
 fn json(record: &Record, outcome: &Outcome, context: &Context) -> Result<Vec<u8>> {
     #[derive(Serialize)]
     struct Left<'a> {

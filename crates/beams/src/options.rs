@@ -154,9 +154,10 @@ const PHOTONS_PER_PIXEL: u64 = 16;
 const FEWEST_PHOTONS: u64 = 4096;
 /// A pass takes 1.2 GB at most by default; see [`SURFACE_BYTES`] and [`BEAM_BYTES`].
 const MOST_PHOTONS: u64 = 1 << 18;
-/// Peak memory of a photon's traces on surfaces. Measured on cornell-blocks, 2.3 traces each: 350.
+/// At least the peak memory of a photon's traces on surfaces. Measured on cornell-blocks without
+/// thinning, 2.3 traces each: 350.
 const SURFACE_BYTES: u64 = 400;
-/// Likewise of its beams with their places in the tiles' lists, 5.3 beams each: 3440.
+/// Likewise of its beams, 5.3 each, when every tile had a list of its own: 3440.
 const BEAM_BYTES: u64 = 4000;
 /// Connections to light sources per camera path, where there is a choice.
 const LIGHT_SAMPLES: u32 = 8;

@@ -23,13 +23,15 @@ use tpb_beams::{BeamOptions, KernelChoice, Sampler};
 use tpb_plot::{Axis, Chart, Mark, Series};
 use tpb_scene::TimeSpec;
 
-use crate::error::{Result, ValidationError};
+use crate::artefacts::leave_chart;
+use crate::error::Result;
 use crate::expected::SingleScattering;
 use crate::experiment::{Context, Effort, Experiment, Kind, Outcome};
 use crate::measure::{BatchPlan, Estimator, batches};
 use crate::registry::Experiments;
 use crate::sabotage::Sabotage;
 use crate::scenes::{Fog, View, infinite_fog, only_depth};
+use crate::statistics::regression::{self, jackknife, variance};
 use crate::statistics::{Batches, Criterion, Finding, Target, judge};
 
 const FOG: Fog = Fog { sigma_s: 0.4, sigma_a: 0.1, g: 0.0 };
@@ -129,7 +131,7 @@ impl Blur {
         let biases = radii.iter().map(|&r| predicted(r)).collect::<Result<Vec<_>>>()?;
         let small = [0.02, 0.04].map(|r| Ok((r, predicted(r)?)));
         let small = small.into_iter().collect::<Result<Vec<_>>>()?;
-        let limit = slope(&small);
+        let limit = regression::exponent(&small);
 
         let plan = BatchPlan { batches: BATCHES as u64, passes, seed: context.seed };
         let mut measured = Vec::new();
@@ -150,7 +152,7 @@ impl Blur {
         };
         let exponent = |without: Option<usize>| {
             let means = measured.iter().map(|column| mean(column, without));
-            slope(&radii.iter().copied().zip(means).collect::<Vec<_>>())
+            regression::exponent(&radii.iter().copied().zip(means).collect::<Vec<_>>())
         };
         let mut values = Batches::new();
         for (batch, pseudo) in jackknife(&exponent, BATCHES).into_iter().enumerate() {
@@ -160,12 +162,13 @@ impl Blur {
         let fitted: Vec<_> = radii.iter().copied().zip(biases.iter().copied()).collect();
         let name = |radius: &f64| format!("bias over its prediction, radius {radius}");
         let mut targets: Vec<Target> = radii.iter().map(|r| target(name(r), 1.0)).collect();
-        targets.push(target("exponent of bias in the radius".into(), slope(&fitted)));
+        targets
+            .push(target("exponent of bias in the radius".into(), regression::exponent(&fitted)));
         let judgement = judge(&targets, &values, &self.criterion(context));
         let mut outcome: Outcome = judgement.into();
         outcome.notes.push(format!(
             "predicted exponent {:.3} here, {limit:.3} for small radii; bias {:.1} % to {:.1} %",
-            slope(&fitted),
+            regression::exponent(&fitted),
             100.0 * biases[0],
             100.0 * biases[biases.len() - 1]
         ));
@@ -266,7 +269,7 @@ impl Blur {
                 let kept = kept.filter(|(pass, _)| Some(pass / per_batch) != without);
                 (*x, variance(&kept.map(|(_, v)| *v).collect::<Vec<_>>()))
             });
-            slope(&variances.collect::<Vec<_>>())
+            regression::exponent(&variances.collect::<Vec<_>>())
         };
         let pseudo = Pseudo([0, 1].map(|which| jackknife(&|w| exponent(which, w), BATCHES)));
         let variances = runs.iter().zip(&passes).map(|((x, _), of)| (*x, variance(&of[0])));
@@ -289,11 +292,7 @@ impl Blur {
             y: Axis::logarithmic(labels.1),
             series: series.to_vec(),
         };
-        let svg = chart.svg((900, 520)).map_err(|e| ValidationError::unusable("blur plot", e))?;
-        let folder = context.out.join(self.name().replace('/', "-"));
-        std::fs::create_dir_all(&folder).map_err(|error| ValidationError::io(&folder, error))?;
-        let path = folder.join("blur.svg");
-        std::fs::write(&path, svg).map_err(|error| ValidationError::io(&path, error))
+        leave_chart(context, &self.name(), "blur.svg", &chart)
     }
 }
 
@@ -313,27 +312,6 @@ struct Exponents {
 
 fn target(name: String, expected: f64) -> Target {
     Target { name, expected, error: 1e-4 * f64::abs(expected) }
-}
-
-/// Slope of ln|y| over ln x by least squares.
-pub(super) fn slope(points: &[(f64, f64)]) -> f64 {
-    let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.abs().ln())).collect();
-    let n = logs.len() as f64;
-    let (x, y) = logs.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
-    let above: f64 = logs.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    above / logs.iter().map(|p| (p.0 - x) * (p.0 - x)).sum::<f64>()
-}
-
-pub(super) fn variance(values: &[f64]) -> f64 {
-    let n = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (n - 1.0)
-}
-
-/// B θ − (B − 1) θ₋ᵢ.
-pub(super) fn jackknife(of: &impl Fn(Option<usize>) -> f64, batches: usize) -> Vec<f64> {
-    let (n, whole) = (batches as f64, of(None));
-    (0..batches).map(|batch| n * whole - (n - 1.0) * of(Some(batch))).collect()
 }
 
 impl Experiment for Blur {
@@ -363,30 +341,5 @@ impl Experiment for Blur {
             What::Bias => self.bias(context),
             What::Variance => self.variance(context),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn slopes_are_exponents_and_pseudo_values_of_a_mean_are_the_values() {
-        let cubes: Vec<_> = [0.1, 0.5, 2.0].map(|x: f64| (x, -7.0 * x.powi(3))).to_vec();
-        assert!((slope(&cubes) - 3.0).abs() < 1e-12);
-        let values = [1.0, 4.0, 2.0, 7.0];
-        let mean = |without: Option<usize>| {
-            let kept: Vec<f64> = values
-                .iter()
-                .enumerate()
-                .filter(|(i, _)| Some(*i) != without)
-                .map(|p| *p.1)
-                .collect();
-            kept.iter().sum::<f64>() / kept.len() as f64
-        };
-        for (pseudo, value) in jackknife(&mean, 4).iter().zip(values) {
-            assert!((pseudo - value).abs() < 1e-12);
-        }
-        assert!((variance(&values) - 7.0).abs() < 1e-12);
     }
 }

@@ -26,7 +26,8 @@ use tpb_reference::beams::even_spread::{
 };
 use tpb_scene::{EmitterKind, EmitterPart, MediumId, TimeSpec};
 
-use crate::error::{Result, ValidationError};
+use crate::artefacts::leave_chart;
+use crate::error::Result;
 use crate::experiment::{Context, Effort, Experiment, Outcome};
 use crate::measure::{BatchPlan, Estimator, batches};
 use crate::registry::Experiments;
@@ -265,10 +266,5 @@ fn draw(cases: &[Case], outcome: &Outcome, context: &Context) -> Result<()> {
             Series::new("delay of the mean, measured", Mark::Points, delays).with_band(delay_bars),
         ],
     };
-    let svg =
-        chart.svg((900, 520)).map_err(|e| ValidationError::unusable("even-spread plot", e))?;
-    let folder = context.out.join("even-spread-laser");
-    std::fs::create_dir_all(&folder).map_err(|error| ValidationError::io(&folder, error))?;
-    let path = folder.join("even-spread.svg");
-    std::fs::write(&path, svg).map_err(|error| ValidationError::io(&path, error))
+    leave_chart(context, "even-spread-laser", "even-spread.svg", &chart)
 }

@@ -26,13 +26,14 @@ use tpb_beams::{BeamOptions, KernelChoice, Sampler};
 use tpb_plot::{Axis, Chart, Mark, Series};
 use tpb_scene::{Scene, TimeSpec};
 
-use crate::error::{Result, ValidationError};
+use crate::artefacts::leave_chart;
+use crate::error::Result;
 use crate::expected::SingleScattering;
 use crate::experiment::{Context, Effort, Experiment, Kind, Outcome};
-use crate::experiments::blur::{jackknife, slope, variance};
 use crate::measure::{BatchPlan, Estimator, batches};
 use crate::registry::Experiments;
 use crate::scenes::{Fog, View, infinite_fog, only_depth};
+use crate::statistics::regression::{self, jackknife, variance};
 use crate::statistics::{Batches, Criterion, Finding, Target, judge};
 
 const FOG: Fog = Fog { sigma_s: 0.4, sigma_a: 0.1, g: 0.0 };
@@ -181,7 +182,7 @@ impl Progressive {
             .iter()
             .map(|&radius| Ok((radius, energy(Some((self.kernel, radius)))? / sharp - 1.0)))
             .collect::<Result<Vec<_>>>()?;
-        Ok(-2.0 * self.exponent() * slope(&biases))
+        Ok(-2.0 * self.exponent() * regression::exponent(&biases))
     }
 
     fn draw(self, context: &Context, variances: Variances) -> Result<()> {
@@ -194,12 +195,7 @@ impl Progressive {
             y: Axis::logarithmic("variance of the mean, of a ray's bins [W² m⁻⁴ sr⁻²]"),
             series: vec![Series::new("measured", Mark::LineAndPoints, variances)],
         };
-        let unusable = |e| ValidationError::unusable("plot of progress", e);
-        let svg = chart.svg((900, 520)).map_err(unusable)?;
-        let folder = context.out.join(self.name().replace('/', "-"));
-        std::fs::create_dir_all(&folder).map_err(|error| ValidationError::io(&folder, error))?;
-        let path = folder.join("progressive.svg");
-        std::fs::write(&path, svg).map_err(|error| ValidationError::io(&path, error))
+        leave_chart(context, &self.name(), "progressive.svg", &chart)
     }
 }
 
@@ -228,12 +224,13 @@ impl Experiment for Progressive {
         let all = variances(&blocks, None);
         let note = format!(
             "exponents: variance {:.3}, squared bias {of_bias:.3} (exact, small radii)",
-            slope(&all)
+            regression::exponent(&all)
         );
         if (of_bias - expected).abs() > BIAS_MARGIN {
             return Ok(Outcome::exact(false, vec![note]));
         }
-        let pseudo = jackknife(&|without| slope(&variances(&blocks, without)), BATCHES);
+        let pseudo =
+            jackknife(&|without| regression::exponent(&variances(&blocks, without)), BATCHES);
         let (mut values, mut above) = (Batches::new(), Batches::new());
         for exponent in pseudo {
             values.push(vec![exponent]);

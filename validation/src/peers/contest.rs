@@ -13,9 +13,7 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use tpb_film::{FilmOptions, TransientFilm};
 use tpb_optics::seed_of;
-use tpb_render::{Budget, Method, RunSettings, Stopwatch, run};
 use tpb_scene::{Plan, Scene, Transport};
 
 use super::NAME;
@@ -23,9 +21,9 @@ use super::agreement::{Agreement, agreement, totals};
 use super::driver::{Introduction, Peer};
 use crate::cube::Cube;
 use crate::error::{Result, ValidationError};
-use crate::measure::{Estimator, layout};
+use crate::measure::Estimator;
 use crate::reference_cube::ReferenceCube;
-use crate::run_time::measure::{Run, Seconds, Snapshot, curve, residuals};
+use crate::run_time::measure::{Run, Seconds, Snapshot, Underway, curve, residuals};
 use crate::run_time::{CONFIDENCE, ErrorAgainstTime};
 use crate::statistics::batches::summarise;
 use crate::statistics::split::Estimate;
@@ -193,18 +191,11 @@ impl ContestPlan<'_> {
     ) -> Result<Ended> {
         let scene = self.scene;
         let plan = Plan::new(scene, &scene.integrator);
-        let mut film = TransientFilm::<C>::new(layout(&scene.film, 0.0)?, FilmOptions::default())?;
-        let clock = Stopwatch::start();
-        let method = estimator.prepare::<C>(scene, &plan, scene.integrator)?;
-        let mut seconds = Seconds::default();
-        seconds.add(clock.wall().as_secs_f64(), clock.cpu().map(|cpu| cpu.as_secs_f64()));
-        let mut run =
-            Run { setup_seconds: seconds.wall, options: method.options(), snapshots: Vec::new() };
+        let (mut underway, mut run) = Underway::<C>::new(scene, &plan, estimator, seed)?;
         let mut cube = None;
         for &passes in checkpoints {
-            add_passes::<C>(&*method, &mut film, seed, passes, &mut seconds)?;
-            let seen = cube.insert(Cube::of(&film.develop()));
-            run.snapshots.push(self.snapshot(passes, seconds, seen));
+            let seen = cube.insert(underway.until(passes)?);
+            run.snapshots.push(self.snapshot(passes, underway.seconds, seen));
         }
         self.end(run, cube)
     }
@@ -344,25 +335,6 @@ impl Row {
     fn work(&self) -> Vec<f64> {
         self.split.replicates.iter().zip(&self.cpu_seconds).map(|(nmse, cpu)| nmse * cpu).collect()
     }
-}
-
-/// Passes up to `passes` in all.
-fn add_passes<const C: usize>(
-    method: &dyn Method<C>,
-    film: &mut TransientFilm<C>,
-    seed: u64,
-    passes: u64,
-    seconds: &mut Seconds,
-) -> Result<()> {
-    let made = film.passes();
-    let settings = RunSettings { seed, budget: Budget::Passes(passes - made), first_pass: made };
-    let summary = run(method, film, &settings, &Stopwatch::start(), &mut ());
-    if film.non_finite() > 0 {
-        let reason = format!("{} contributions were not finite", film.non_finite());
-        return Err(ValidationError::unusable(method.name(), reason));
-    }
-    seconds.add(summary.wall_seconds, summary.cpu_seconds);
-    Ok(())
 }
 
 /// Rising numbers of passes, each once, of which the last is `passes`, or 1 at least.

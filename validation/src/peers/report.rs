@@ -3,6 +3,7 @@
 use super::NAME;
 use super::agreement::{AGREEMENT, Agreement};
 use super::contest::{Contest, Row};
+use crate::statistics::ratio::short;
 use crate::statistics::split::Estimate;
 
 impl Contest {
@@ -83,17 +84,6 @@ fn interval(estimate: &Estimate) -> String {
 
 fn times(ratio: f64, [low, high]: [f64; 2]) -> String {
     format!("{} [{}, {}]", short(ratio), short(low), short(high))
-}
-
-/// Three digits.
-fn short(value: f64) -> String {
-    if value >= 99.5 {
-        format!("{value:.0}")
-    } else if value >= 9.95 {
-        format!("{value:.1}")
-    } else {
-        format!("{value:.2}")
-    }
 }
 
 fn agreement(found: &Agreement) -> String {

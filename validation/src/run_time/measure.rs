@@ -2,8 +2,8 @@
 
 use tpb_film::{FilmOptions, TransientFilm};
 use tpb_optics::seed_of;
-use tpb_render::{Budget, Method, RunSettings, RunSummary, Stopwatch, run};
-use tpb_scene::{Plan, Transport};
+use tpb_render::{Budget, Method, RunSettings, Stopwatch, run};
+use tpb_scene::{Plan, Scene, Transport};
 
 use super::slope::{Resolved, slope};
 use super::{CONFIDENCE, Checkpoint, Curve, ErrorAgainstTime, RunTimePlan};
@@ -105,21 +105,15 @@ impl RunTimePlan<'_> {
     ) -> Result<Run> {
         let scene = self.scene;
         let plan = Plan::new(scene, &scene.integrator);
-        let mut film = TransientFilm::<C>::new(layout(&scene.film, 0.0)?, FilmOptions::default())?;
-        let clock = Stopwatch::start();
-        let method = estimator.prepare::<C>(scene, &plan, scene.integrator)?;
-        let mut seconds = Seconds::default();
-        seconds.add(clock.wall().as_secs_f64(), clock.cpu().map(|cpu| cpu.as_secs_f64()));
-        let mut run =
-            Run { setup_seconds: seconds.wall, options: method.options(), snapshots: Vec::new() };
+        let (mut underway, mut run) = Underway::<C>::new(scene, &plan, estimator, seed)?;
         while checkpoints.map_or_else(
             || self.time_for_another(&run.snapshots),
             |wanted| run.snapshots.len() < wanted,
         ) {
-            let summary = double::<C>(&*method, &mut film, seed)?;
-            seconds.add(summary.wall_seconds, summary.cpu_seconds);
-            let residuals = residuals(&Cube::of(&film.develop()), self.reference);
-            run.snapshots.push(Snapshot { passes: film.passes(), seconds, residuals });
+            let cube = underway.until((2 * underway.passes()).max(1))?;
+            let (passes, seconds) = (underway.passes(), underway.seconds);
+            let residuals = residuals(&cube, self.reference);
+            run.snapshots.push(Snapshot { passes, seconds, residuals });
         }
         Ok(run)
     }
@@ -131,20 +125,50 @@ impl RunTimePlan<'_> {
     }
 }
 
-/// Adds as many passes as the film has, the first to an empty one.
-fn double<const C: usize>(
-    method: &dyn Method<C>,
-    film: &mut TransientFilm<C>,
+/// A run under way: a prepared method and the film of its passes so far.
+pub(crate) struct Underway<'a, const C: usize> {
+    method: Box<dyn Method<C> + 'a>,
+    film: TransientFilm<C>,
     seed: u64,
-) -> Result<RunSummary> {
-    let made = film.passes();
-    let settings = RunSettings { seed, budget: Budget::Passes(made.max(1)), first_pass: made };
-    let summary = run(method, film, &settings, &Stopwatch::start(), &mut ());
-    if film.non_finite() > 0 {
-        let reason = format!("{} contributions were not finite", film.non_finite());
-        return Err(ValidationError::unusable(method.name(), reason));
+    pub(crate) seconds: Seconds,
+}
+
+impl<'a, const C: usize> Underway<'a, C> {
+    /// Before the first pass; what has been found so far is its set-up.
+    pub(crate) fn new(
+        scene: &'a Scene,
+        plan: &'a Plan,
+        estimator: &Estimator,
+        seed: u64,
+    ) -> Result<(Self, Run)> {
+        let film = TransientFilm::<C>::new(layout(&scene.film, 0.0)?, FilmOptions::default())?;
+        let clock = Stopwatch::start();
+        let method = estimator.prepare::<C>(scene, plan, scene.integrator)?;
+        let mut seconds = Seconds::default();
+        seconds.add(clock.wall().as_secs_f64(), clock.cpu().map(|cpu| cpu.as_secs_f64()));
+        let run =
+            Run { setup_seconds: seconds.wall, options: method.options(), snapshots: Vec::new() };
+        Ok((Self { method, film, seed, seconds }, run))
     }
-    Ok(summary)
+
+    pub(crate) fn passes(&self) -> u64 {
+        self.film.passes()
+    }
+
+    /// What is seen after so many passes in all.
+    pub(crate) fn until(&mut self, passes: u64) -> Result<Cube> {
+        let Self { method, film, seed, seconds } = self;
+        let made = film.passes();
+        let budget = Budget::Passes(passes - made);
+        let settings = RunSettings { seed: *seed, budget, first_pass: made };
+        let summary = run(&**method, film, &settings, &Stopwatch::start(), &mut ());
+        if film.non_finite() > 0 {
+            let reason = format!("{} contributions were not finite", film.non_finite());
+            return Err(ValidationError::unusable(method.name(), reason));
+        }
+        seconds.add(summary.wall_seconds, summary.cpu_seconds);
+        Ok(Cube::of(&film.develop()))
+    }
 }
 
 pub(crate) fn residuals(cube: &Cube, reference: &ReferenceCube) -> Vec<f32> {

@@ -5,7 +5,7 @@
 //! over replicates (Efron & Stein 1981), each of which is left out of all checkpoints at once.
 
 use crate::statistics::split::Estimate;
-use crate::statistics::{Gram, ReferenceNoise, student};
+use crate::statistics::{Gram, ReferenceNoise, regression, student};
 
 /// ln seconds and ln error of a checkpoint: over all replicates, and with each left out.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,9 +39,9 @@ pub(super) fn slope(points: &[Resolved], confidence: f64) -> Option<Estimate> {
         return None;
     }
     let n = points[0].without.len();
-    let value = fit(points.iter().map(|point| point.all));
+    let value = regression::slope(points.iter().map(|point| point.all));
     let left_out: Vec<f64> =
-        (0..n).map(|i| fit(points.iter().map(|point| point.without[i]))).collect();
+        (0..n).map(|i| regression::slope(points.iter().map(|point| point.without[i]))).collect();
     let mean = left_out.iter().sum::<f64>() / n as f64;
     let squares: f64 = left_out.iter().map(|slope| (slope - mean).powi(2)).sum();
     let standard_error = (squares * (n as f64 - 1.0) / n as f64).sqrt();
@@ -50,12 +50,4 @@ pub(super) fn slope(points: &[Resolved], confidence: f64) -> Option<Estimate> {
     }
     let half = student::quantile(0.5 * (1.0 - confidence), n as f64 - 1.0) * standard_error;
     Some(Estimate { value, standard_error, interval: [value - half, value + half] })
-}
-
-fn fit(points: impl Iterator<Item = (f64, f64)> + Clone) -> f64 {
-    let n = points.clone().count() as f64;
-    let mean = |of: fn((f64, f64)) -> f64| points.clone().map(of).sum::<f64>() / n;
-    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
-    let products = points.clone().map(|p| (p.0 - x) * (p.1 - y)).sum::<f64>();
-    products / points.map(|p| (p.0 - x).powi(2)).sum::<f64>()
 }

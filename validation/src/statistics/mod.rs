@@ -12,6 +12,7 @@
 //! * [`mod@chi_square`]: histograms against densities.
 //! * [`ratio`] (by the delta method, and Fieller's) and [`bootstrap`] (of medians): how many times
 //!   better one method is than another.
+//! * [`regression`]: slopes, exponents of power laws, and jackknife pseudo-values.
 //! * [`split`]: the error of a cube, split into variance and squared bias without bias.
 //!
 //! No variance is ever raised to a floor. Every verdict carries its false-alarm probability: how
@@ -24,6 +25,7 @@ pub mod bootstrap;
 pub mod chi_square;
 pub mod multiple;
 pub mod ratio;
+pub mod regression;
 pub mod split;
 
 pub use agreement::{Contrast, Criterion, Finding, Judgement, Target, judge};

@@ -89,7 +89,7 @@ impl Factor {
 }
 
 /// Two digits at least.
-fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     if value >= 99.5 {
         format!("{value:.0}")
     } else if value >= 9.95 {

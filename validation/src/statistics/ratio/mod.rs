@@ -12,4 +12,5 @@ pub mod delta;
 pub mod fieller;
 
 pub use delta::{RATIO_LEVEL, RatioInterval, ratio_of_means};
+pub(crate) use fieller::short;
 pub use fieller::{Factor, Winner};
