@@ -63,7 +63,8 @@ pub(crate) struct Camera<'a, const C: usize, K> {
     pub(crate) sights: &'a Sights,
     /// For rays that mirrors, glass or rough surfaces have turned; `None` in scenes without.
     pub(crate) turned: Option<&'a BeamMap<'a, C>>,
-    pub(crate) photons: &'a SurfaceMap<C>,
+    /// Those of caustics have a map of their own.
+    pub(crate) photons: &'a [SurfaceMap<C>],
     pub(crate) kernel: K,
     /// For the gather.
     pub(crate) instructions: Instructions,
@@ -308,17 +309,19 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
         if !self.plan.surface_photons {
             return;
         }
-        let area = self.photons.area(self.scene, hit);
-        let reflected = path.throughput * lobe.reflectance.channels() * (share / (PI * area));
         let eta = path.vertex.region.eta;
         // Photons lie on the faces.
         let face = lobe.guard.unwrap_or(lobe.normal);
-        self.photons.query(self.scene, hit, face, |photon| {
-            if self.integrator.counts(photon.depth + path.events) {
-                let lag = eta * photon.direction.dot(hit.position - photon.position);
-                path.deposit(path.opl + photon.opl + lag, reflected * photon.power, tile);
-            }
-        });
+        for map in self.photons {
+            let area = map.area(self.scene, hit);
+            let reflected = path.throughput * lobe.reflectance.channels() * (share / (PI * area));
+            map.query(self.scene, hit, face, |photon| {
+                if self.integrator.counts(photon.depth + path.events) {
+                    let lag = eta * photon.direction.dot(hit.position - photon.position);
+                    path.deposit(path.opl + photon.opl + lag, reflected * photon.power, tile);
+                }
+            });
+        }
     }
 
     /// Russian roulette between mirrors.

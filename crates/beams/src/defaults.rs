@@ -23,9 +23,9 @@ const MOST_OF_CHORD: f64 = 0.04;
 /// Beams' radius over the smallest mean free path at most.
 const MOST_OF_FREE_PATH: f64 = 0.1;
 /// Disc's radius over the pixel's width.
-const DISC_PIXELS: f64 = 2.0;
+const DISC_PIXELS: f64 = 2.5;
 /// Disc's radius over the root of the shape's area at most.
-const MOST_OF_SHAPE: f64 = 0.04;
+const MOST_OF_SHAPE: f64 = 0.05;
 
 /// Default radii of beams and of surface photons' discs \[m\]: positive and finite.
 pub(crate) fn radii(scene: &Scene) -> (f64, f64) {

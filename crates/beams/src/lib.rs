@@ -54,7 +54,7 @@ pub mod surface_map;
 pub mod sweep;
 
 pub use method::PhotonBeams;
-pub use options::{BeamLength, BeamOptions, KernelChoice, OptionError, Settings, Temporal};
+pub use options::{BeamLength, BeamOptions, KernelChoice, OptionError, Radii, Settings, Temporal};
 pub use tpb_transport::{Sampler, Sampling};
 
 /// Items of the random streams: photons count from 0, pixels from 2⁶³, tiles from 3·2⁶².

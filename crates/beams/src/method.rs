@@ -13,6 +13,7 @@ use crate::kernel::RayBeamKernel;
 use crate::kernel1d::Kernel1d;
 use crate::kernel2d::Kernel2d;
 use crate::kernel3d::Kernel3d;
+use crate::options::Radii;
 use crate::photons::PhotonTracer;
 use crate::sight::Sights;
 use crate::surface_map::SurfaceMap;
@@ -60,7 +61,7 @@ impl<'a> PhotonBeams<'a> {
         film: &mut TransientFilm<C>,
         kernel: K,
         beams: &[Beam<C>],
-        photons: &SurfaceMap<C>,
+        photons: &[SurfaceMap<C>],
     ) -> Pairs {
         let &Self { scene, plan, integrator, ref settings, instructions } = self;
         let radius = kernel.radius();
@@ -101,14 +102,17 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
 
     fn pass(&self, id: PassId, film: &mut TransientFilm<C>) -> PassReport {
         let Self { scene, plan, integrator, settings, .. } = self;
-        let (radius, surface_radius) = settings.radii(id.index);
+        let Radii { beams: radius, surface, caustic } = settings.radii(id.index);
         let Settings { photons_per_pass, beam_photons, .. } = *settings;
         let Settings { length, sampler, thin_from, .. } = *settings;
         let sampling = Sampling { sampler, thin_from };
         let tracer = PhotonTracer { scene, plan, integrator: *integrator, length, sampling };
         let traced = tracer.trace::<C>(id, photons_per_pass, beam_photons);
-        let surface_photons = traced.surface.len() as u64;
-        let photons = SurfaceMap::new(traced.surface, surface_radius);
+        let surface_photons = (traced.surface.len() + traced.caustic.len()) as u64;
+        let mut photons = vec![SurfaceMap::new(traced.surface, surface)];
+        if plan.caustic_photons {
+            photons.push(SurfaceMap::new(traced.caustic, caustic));
+        }
         let beams = &traced.beams;
         let pairs = match settings.kernel {
             KernelChoice::OneD => self.gather(id, film, Kernel1d { radius }, beams, &photons),

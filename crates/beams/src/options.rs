@@ -56,10 +56,12 @@ pub struct BeamOptions {
     pub radius: Option<f64>,
     /// Radius of the surface photons' disc in the first pass \[m\].
     pub surface_radius: Option<f64>,
+    /// Radius of the caustic photons' disc in the first pass \[m\]; by default a fifth of the other's.
+    pub caustic_radius: Option<f64>,
     /// The beams' radius of pass i (from 0) is multiplied by (1 + i/32)^(−`radius_exponent`);
     /// by default 1/5.
     pub radius_exponent: Option<f64>,
-    /// Likewise the disc's; by default 1/6.
+    /// Likewise the discs', with 8 for 32; by default 1/6.
     pub surface_radius_exponent: Option<f64>,
     /// Photons emitted in a pass.
     pub photons_per_pass: Option<u64>,
@@ -123,9 +125,11 @@ pub struct Settings {
     pub radius: f64,
     /// Radius of the surface photons' disc in the first pass \[m\].
     pub surface_radius: f64,
+    /// Radius of the caustic photons' disc in the first pass \[m\].
+    pub caustic_radius: f64,
     /// The beams' radius of pass i (from 0) is multiplied by (1 + i/32)^(−`radius_exponent`).
     pub radius_exponent: f64,
-    /// Likewise the disc's.
+    /// Likewise the discs', with 8 for 32.
     pub surface_radius_exponent: f64,
     /// Photons emitted in a pass; 0 in scenes that keep none.
     pub photons_per_pass: u64,
@@ -143,8 +147,23 @@ pub struct Settings {
     pub sampler: Sampler,
 }
 
-/// Passes over which radii keep nearly their first value.
+/// Radius of the caustic photons' disc over the other's: caustics are sharp, and bright enough for it.
+const CAUSTIC_RADIUS: f64 = 0.2;
+/// Radii of a pass \[m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Radii {
+    /// Of beams.
+    pub beams: f64,
+    /// Of the surface photons' disc.
+    pub surface: f64,
+    /// Of the caustic photons' disc.
+    pub caustic: f64,
+}
+
+/// Passes over which the beams' radius keeps nearly its first value.
 const PASSES_BEFORE_SHRINKING: f64 = 32.0;
+/// Likewise the discs', which begin wider.
+const PASSES_BEFORE_DISCS_SHRINK: f64 = 8.0;
 /// Beams that a ray meets go as photons × radius, the radius as 1/edge: so many photons leave
 /// beams per pixel along the image's edge that the gather costs about as much as the tracing.
 const BEAM_PHOTONS_PER_PIXEL_EDGE: f64 = 128.0;
@@ -183,6 +202,7 @@ impl Settings {
     pub fn new(scene: &Scene, plan: &Plan, options: &BeamOptions) -> Result<Self, OptionError> {
         options.check_counts()?;
         let (radius, surface_radius) = defaults::radii(scene);
+        let surface_radius = options.surface_radius.unwrap_or(surface_radius);
         let pixels = scene.film.width * scene.film.height;
         let few = (BEAM_PHOTONS_PER_PIXEL_EDGE * (pixels as f64).sqrt()) as u64;
         let many = (PHOTONS_PER_PIXEL * pixels as u64).clamp(FEWEST_PHOTONS, MOST_PHOTONS);
@@ -208,7 +228,8 @@ impl Settings {
             length: options.length.unwrap_or_default(),
             temporal: options.temporal.unwrap_or_default(),
             radius: options.radius.unwrap_or(radius),
-            surface_radius: options.surface_radius.unwrap_or(surface_radius),
+            surface_radius,
+            caustic_radius: options.caustic_radius.unwrap_or(CAUSTIC_RADIUS * surface_radius),
             radius_exponent: options.radius_exponent.unwrap_or(0.2),
             surface_radius_exponent: options.surface_radius_exponent.unwrap_or(1.0 / 6.0),
             photons_per_pass,
@@ -223,20 +244,28 @@ impl Settings {
         Ok(settings)
     }
 
-    /// Radii of beams and discs in pass `index` \[m\].
+    /// Radii of beams and discs in pass `index`.
     ///
     /// With variance ∝ 1/R for beams and 1/R² for discs, and bias ∝ R², the mean square error falls
     /// fastest with exponents 1/5 and 1/6. (Near borders bias is ∝ R; see the crate's page.) The
-    /// first passes keep the radius nearly: it is a pixel's or two already, and shrinking from the
+    /// first passes keep the radius nearly: it is some pixels already, and shrinking from the
     /// very first pass would buy bias that noise hides.
-    pub fn radii(&self, index: u64) -> (f64, f64) {
-        let age = 1.0 + index as f64 / PASSES_BEFORE_SHRINKING;
-        let beams = self.radius * age.powf(-self.radius_exponent);
-        (beams, self.surface_radius * age.powf(-self.surface_radius_exponent))
+    pub fn radii(&self, index: u64) -> Radii {
+        let age = |few: f64| 1.0 + index as f64 / few;
+        let discs = age(PASSES_BEFORE_DISCS_SHRINK).powf(-self.surface_radius_exponent);
+        Radii {
+            beams: self.radius * age(PASSES_BEFORE_SHRINKING).powf(-self.radius_exponent),
+            surface: self.surface_radius * discs,
+            caustic: self.caustic_radius * discs,
+        }
     }
 
     fn check(&self) -> Result<(), OptionError> {
-        let lengths = [("radius", self.radius), ("surface_radius", self.surface_radius)];
+        let lengths = [
+            ("radius", self.radius),
+            ("surface_radius", self.surface_radius),
+            ("caustic_radius", self.caustic_radius),
+        ];
         for (option, found) in lengths {
             // Cubes of radii, and products of them with lengths, stay finite.
             if !(1e-30..=1e30).contains(&found) {

@@ -7,7 +7,8 @@
 //! **Counted once.** Surface photons that came from the emitter through null boundaries only are
 //! not kept: next-event estimation at the camera's end owns direct light. It cannot connect to
 //! lasers; their unscattered photons are kept. Light through glass or off mirrors has n ≥ 1 and is
-//! kept: caustics.
+//! kept: caustics. These, and spots of lasers, are sharp and bright where others are smooth and dim; they
+//! are kept apart, for a disc of their own (caustic and global photon map: Jensen 1996).
 
 use tpb_film::Ledger;
 use tpb_optics::{Stream, medium};
@@ -25,8 +26,10 @@ use crate::beam::{Attenuation, Beam, SurfacePhoton, visible_length};
 pub struct Photons<const C: usize> {
     /// Beams in media.
     pub beams: Vec<Beam<C>>,
-    /// Photons on diffuse surfaces.
+    /// Photons on diffuse surfaces, but for the next.
     pub surface: Vec<SurfacePhoton<C>>,
+    /// Those that lights, mirrors and smooth glass alone have sent there.
+    pub caustic: Vec<SurfacePhoton<C>>,
     /// Where the light went.
     pub ledger: Ledger,
 }
@@ -66,14 +69,17 @@ impl PhotonTracer<'_> {
             beam_scale,
             beams: vec![],
             surface: vec![],
+            caustic: vec![],
         });
         let mut all = Photons { ledger, ..Photons::default() };
         all.beams.reserve_exact(traces.iter().map(|t| t.beams.len()).sum());
         all.surface.reserve_exact(traces.iter().map(|t| t.surface.len()).sum());
+        all.caustic.reserve_exact(traces.iter().map(|t| t.caustic.len()).sum());
         // Each chunk is freed as soon as it is merged.
         for chunk in traces {
             all.beams.extend(chunk.beams);
             all.surface.extend(chunk.surface);
+            all.caustic.extend(chunk.caustic);
         }
         all
     }
@@ -86,6 +92,7 @@ struct Traces<'a, const C: usize> {
     beam_scale: f64,
     beams: Vec<Beam<C>>,
     surface: Vec<SurfacePhoton<C>>,
+    caustic: Vec<SurfacePhoton<C>>,
 }
 
 impl<const C: usize> PhotonVisitor<C> for Traces<'_, C> {
@@ -111,7 +118,9 @@ impl<const C: usize> PhotonVisitor<C> for Traces<'_, C> {
         let connectable = || scene.emitters[photon.emitter].kind.can_be_connected();
         let owned_by_connections = photon.events == 0 && connectable();
         if plan.surface_photons && !owned_by_connections && integrator.reaches(photon.depth()) {
-            self.surface.push(SurfacePhoton {
+            let caustic = photon.specular && plan.caustic_photons;
+            let kept = if caustic { &mut self.caustic } else { &mut self.surface };
+            kept.push(SurfacePhoton {
                 position: photon.vertex.position,
                 direction: photon.direction,
                 normal: arrival.lobe.normal,

@@ -254,6 +254,11 @@ pub(crate) struct BeamArgs {
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
     pub(crate) surface_radius: Option<f64>,
 
+    /// Radius of the disc for caustics, in metres: light that mirrors and glass alone have turned, and
+    /// spots of lasers; a fifth of the other by default
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    pub(crate) caustic_radius: Option<f64>,
+
     /// How fast the kernel shrinks over the passes, from 0 (not at all) to below 0.5
     #[arg(long, value_name = "E", allow_hyphen_values = true)]
     pub(crate) radius_exponent: Option<f64>,

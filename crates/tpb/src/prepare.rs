@@ -161,6 +161,7 @@ fn beam_options(args: &BeamArgs, photons: &PhotonArgs) -> BeamOptions {
         }),
         radius: args.radius,
         surface_radius: args.surface_radius,
+        caustic_radius: args.caustic_radius,
         radius_exponent: args.radius_exponent,
         surface_radius_exponent: args.surface_radius_exponent,
         photons_per_pass: photons.photons,

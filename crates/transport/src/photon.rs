@@ -21,6 +21,8 @@ pub struct Photon<const C: usize> {
     pub opl: f64,
     /// Scattering events so far, of any kind but null crossings.
     pub events: u32,
+    /// All of them were mirrors and smooth glass: what it lights may be a caustic (Jensen 1996).
+    pub specular: bool,
     /// Index of its emitter in [`Scene::emitters`].
     pub emitter: usize,
     /// Its number in the pass, from 0.
@@ -54,6 +56,7 @@ impl<const C: usize> Photon<C> {
             power,
             opl: 0.0,
             events: 0,
+            specular: true,
             emitter: emission.emitter,
             index,
             emitted: power.max_channel(),
@@ -118,6 +121,7 @@ mod tests {
                 power: Spectrum([1e-300]),
                 opl: 0.0,
                 events,
+                specular: false,
                 emitter: 0,
                 index: 0,
                 emitted: 1.0,

@@ -230,6 +230,7 @@ impl<V> Walk<'_, V> {
                 if !photon.power.is_zero() {
                     self.visitor.collision(photon, &part, rng);
                 }
+                photon.specular = false;
                 photon.direction = part.medium.phase.sample(photon.direction, rng);
             }
             Outcome::Survival { weight } => {
@@ -287,6 +288,7 @@ impl<V> Walk<'_, V> {
         lobe: &impl Lobe<C>,
         rng: &mut Stream,
     ) {
+        photon.specular = false;
         let Some(drawn) = lobe.sample(rng) else { return self.absorb(photon, Spectrum::ZERO) };
         self.absorb(photon, lobe.factor() * drawn.weight);
         (photon.vertex.region, photon.direction) = (drawn.region, drawn.direction);

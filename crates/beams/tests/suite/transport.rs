@@ -4,12 +4,13 @@ use glam::DVec3;
 use tpb_beams::photons::PhotonTracer;
 use tpb_beams::{BeamLength, BeamOptions, KernelChoice, PhotonBeams, Sampler, Sampling, Temporal};
 use tpb_film::{Arrays, FilmOptions, Layout, TimeAxis, TransientFilm};
-use tpb_optics::{Rgb, Spectrum};
+use tpb_optics::{Rgb, Spectrum, Stream};
 use tpb_render::{Method, PassId, PassReport};
 use tpb_scene::{
     Bsdf, Dielectric, EmitterKind, EmitterPart, IntegratorSpec, MediumBoundary, MediumId, Plan,
     Reflector, Scene, SceneParts,
 };
+use tpb_transport::{Part, Photon, PhotonBatch, PhotonVisitor, SurfaceArrival};
 
 use crate::scenes;
 
@@ -129,6 +130,58 @@ fn the_ledger_closes_with_glass_mirrors_null_boundaries_colour_and_roulette() {
             ledger_closes::<3>(integrator, length);
         }
     }
+}
+
+/// Remembers whether a photon has scattered in a medium or on a surface.
+#[derive(Default)]
+struct Scattered {
+    yes: bool,
+    arrivals: [u32; 2],
+}
+
+impl PhotonVisitor<1> for Scattered {
+    fn emission(&mut self, _: &Photon<1>, _: &mut Stream) {
+        self.yes = false;
+    }
+
+    fn collision(&mut self, _: &Photon<1>, _: &Part<'_, 1>, _: &mut Stream) {
+        self.yes = true;
+    }
+
+    fn surface(&mut self, photon: &Photon<1>, _: &SurfaceArrival, _: &mut Stream) {
+        assert_eq!(photon.specular, !self.yes, "{} events", photon.events);
+        self.arrivals[usize::from(photon.specular && photon.events > 0)] += 1;
+        self.yes = true;
+    }
+}
+
+#[test]
+fn photons_know_whether_mirrors_and_glass_alone_have_turned_them() {
+    let integrator = IntegratorSpec { max_depth: Some(8), ..Default::default() };
+    let scene = everything(integrator);
+    let tracer = tpb_transport::PhotonTracer { scene: &scene, integrator, sampling: SAMPLING };
+    let batch = PhotonBatch { seed: 3, pass: 1, count: 3000 };
+    let (seen, _) = tracer.trace(batch, |_| Scattered::default());
+    for kind in 0..2 {
+        assert!(seen.iter().map(|s| s.arrivals[kind]).sum::<u32>() > 100);
+    }
+}
+
+#[test]
+fn caustic_photons_are_kept_apart_where_the_plan_has_any() {
+    let integrator = IntegratorSpec { max_depth: Some(8), ..Default::default() };
+    let scene = everything(integrator);
+    let planned = Plan::new(&scene, &integrator);
+    let trace = |plan: &Plan| {
+        let length = BeamLength::Long;
+        let tracer = PhotonTracer { scene: &scene, plan, integrator, length, sampling: SAMPLING };
+        tracer.trace::<1>(PassId { seed: 3, index: 1 }, 3000, 2000)
+    };
+    let (apart, together) =
+        (trace(&planned), trace(&Plan { caustic_photons: false, ..planned.clone() }));
+    assert!(planned.caustic_photons && !apart.caustic.is_empty() && together.caustic.is_empty());
+    assert_eq!(apart.surface.len() + apart.caustic.len(), together.surface.len());
+    assert!(apart.caustic.iter().all(|photon| photon.depth >= 3));
 }
 
 #[test]

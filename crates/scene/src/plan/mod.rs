@@ -37,6 +37,8 @@ pub struct Plan {
     pub beams: bool,
     /// Photons are kept on diffuse surfaces.
     pub surface_photons: bool,
+    /// Some of them are of caustics, or of spots of lasers.
+    pub caustic_photons: bool,
     /// Light is connected from emitters to media and surfaces.
     pub next_event_estimation: bool,
     /// Photons are connected from emitters, surfaces and media to the pinhole.
@@ -126,6 +128,7 @@ impl Plan {
             endless: endless(scene),
             beams: false,
             surface_photons: false,
+            caustic_photons: false,
             next_event_estimation: false,
             eye_connections: false,
             kernel: kernel(scene),
@@ -239,6 +242,16 @@ impl Plan {
             Ok(format!("diffuse shapes: {}", self.diffuse.join(", ")))
         };
         self.surface_photons = self.note(BEAMS, "surface photons", decision);
+        if self.surface_photons {
+            let decision = if !self.unconnectable.is_empty() {
+                Ok(format!("straight light of {}", self.unconnectable.join(", ")))
+            } else if specular.is_empty() || !integrator.reaches(3) {
+                Err("no light straight from mirrors or smooth glass".to_owned())
+            } else {
+                Ok(format!("light straight from {specular}"))
+            };
+            self.caustic_photons = self.note(BEAMS, "a disc for caustics", decision);
+        }
     }
 
     /// Beams connect at surfaces only, the path tracer in media too.

@@ -47,6 +47,13 @@ fn switches_and_reasons_agree_at_every_depth() {
 }
 
 #[test]
+fn caustics_come_from_mirrors_and_glass() {
+    let caustics = |name: &str, depth| plan(&shipped(name), depth).caustic_photons;
+    assert!(caustics("mirror-caustic", 3) && !caustics("mirror-caustic", 2));
+    assert!(!caustics("cornell-blocks", 10) && !caustics("infinite-point", 10));
+}
+
+#[test]
 fn beams_connect_at_surfaces_only() {
     let plan = plan(&shipped("infinite-point"), 10);
     assert!(plan.diffuse.is_empty() && plan.next_event_estimation);

@@ -70,12 +70,13 @@ fn differences(path: &str, old: &Value, new: &Value, changes: &mut Vec<String>) 
 }
 
 /// Options that the command line has a flag for, by their names in reports.
-const FLAGS: [(&str, &str); 15] = [
+const FLAGS: [(&str, &str); 16] = [
     ("kernel", "--kernel"),
     ("length", "--beam-length"),
     ("temporal", "--temporal"),
     ("radius", "--radius"),
     ("surface_radius", "--surface-radius"),
+    ("caustic_radius", "--caustic-radius"),
     ("radius_exponent", "--radius-exponent"),
     ("surface_radius_exponent", "--surface-radius-exponent"),
     ("beam_photons", "--beam-photons"),
