@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::arrays::{Arrays, Quantity};
 use crate::film::{Raw, TransientFilm};
+use crate::layout::Layout;
 use crate::stats::{lag, variance_factor};
 use crate::tile::BLOCK;
 
@@ -19,6 +20,31 @@ impl<const C: usize> TransientFilm<C> {
     pub fn into_arrays(mut self) -> Arrays {
         let (sums, squares) = self.take();
         self.arrays(sums, squares)
+    }
+
+    /// The steady image of the passes so far alone: arrays without bins.
+    pub fn develop_steady(&self) -> Arrays {
+        let Layout { width, height, .. } = *self.layout();
+        Arrays {
+            width,
+            height,
+            bins: 0,
+            channels: self.output_channels(),
+            quantity: Quantity::BinEnergy,
+            opl_edges: vec![],
+            transient: vec![],
+            variance: None,
+            before: vec![],
+            after: vec![],
+            steady: self.steady(),
+        }
+    }
+
+    fn steady(&self) -> Vec<f64> {
+        let Raw { steady_mean, kept, .. } = self.raw();
+        let channels = self.output_channels();
+        let pixels = steady_mean.chunks_exact(kept);
+        pixels.flat_map(|p| (0..channels).map(move |c| p[c.min(kept - 1)])).collect()
     }
 
     fn arrays(&self, mut sums: Vec<f32>, mut squares: Vec<f32>) -> Arrays {
@@ -41,7 +67,6 @@ impl<const C: usize> TransientFilm<C> {
             let all = pixels.flat_map(|p| (0..channels).map(move |c| p[which * kept + source(c)]));
             all.map(|sum| sum / passes).collect()
         };
-        let steady = raw.steady_mean.chunks_exact(kept);
         Arrays {
             width: layout.width,
             height: layout.height,
@@ -53,7 +78,7 @@ impl<const C: usize> TransientFilm<C> {
             variance,
             before: outside(0),
             after: outside(1),
-            steady: steady.flat_map(|p| (0..channels).map(move |c| p[source(c)])).collect(),
+            steady: self.steady(),
         }
     }
 

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use tpb_film::{Ledger, TransientFilm};
+use tpb_film::{Arrays, Ledger, TransientFilm};
 
 use crate::{Budget, Counts, Method, PassId, PassReport, RenderError, Stopwatch};
 
@@ -31,8 +31,8 @@ pub trait Control {
         false
     }
 
-    /// Told after each pass.
-    fn progress(&mut self, _progress: &Progress) {}
+    /// Told after each pass; `steady` develops the steady image so far ([`TransientFilm::develop_steady`]).
+    fn progress(&mut self, _progress: &Progress, _steady: &dyn Fn() -> Arrays) {}
 }
 
 impl Control for () {}
@@ -131,12 +131,13 @@ pub fn run<const C: usize>(
         mean = elapsed.saturating_sub(setup).div_f64(summary.passes as f64);
         summary.relative_error = film.relative_error();
         summary.remember(elapsed);
-        control.progress(&Progress {
+        let progress = Progress {
             passes: summary.passes,
             elapsed,
             remaining: settings.budget.remaining(summary.passes, elapsed, mean),
             relative_error: summary.relative_error,
-        });
+        };
+        control.progress(&progress, &|| film.develop_steady());
     }
     summary.counts = total.counts;
     let mean_of_a_pass = total.ledger.mean(summary.passes);

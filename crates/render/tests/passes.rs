@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use tpb_film::{Arrival, FilmOptions, Layout, Ledger, TimeAxis, TransientFilm};
+use tpb_film::{Arrays, Arrival, FilmOptions, Layout, Ledger, TimeAxis, TransientFilm};
 use tpb_optics::{Spectrum, Stream};
 use tpb_render::{
     Budget, Control, Counts, Method, PassId, PassReport, Progress, RunSettings, RunSummary,
@@ -96,6 +96,7 @@ fn a_run_may_be_continued() {
 struct Watch {
     told: Vec<Progress>,
     stop_after: Option<usize>,
+    steady: Vec<f64>,
 }
 
 impl Control for Watch {
@@ -103,16 +104,19 @@ impl Control for Watch {
         self.stop_after.is_some_and(|passes| self.told.len() >= passes)
     }
 
-    fn progress(&mut self, progress: &Progress) {
+    fn progress(&mut self, progress: &Progress, steady: &dyn Fn() -> Arrays) {
         self.told.push(*progress);
+        self.steady = steady().steady;
     }
 }
 
 #[test]
 fn an_interrupt_ends_the_run_after_the_pass() {
     let mut watch = Watch { stop_after: Some(2), ..Watch::default() };
-    let summary = go(&QUICK, &mut film(), &passes(0, 100), &mut watch);
+    let mut seen = film();
+    let summary = go(&QUICK, &mut seen, &passes(0, 100), &mut watch);
     assert_eq!((summary.passes, summary.interrupted), (2, true));
+    assert!(watch.steady == seen.develop().steady && watch.steady.iter().any(|&v| v > 0.0));
     let mut already = &AtomicBool::new(false);
     already.store(true, Ordering::Relaxed);
     let summary = go(&QUICK, &mut film(), &passes(0, 100), &mut already);

@@ -17,12 +17,15 @@ use tpb_video::{Format, VideoError, VideoOptions, write_video};
 use crate::failure::Failure;
 
 const TRANSIENT: &str = "transient.npz";
+/// While a render goes on.
+const PREVIEW: &str = "preview.png";
 const REPORT: &str = "report.json";
 const FRAMES: &str = "frames";
 const UNFINISHED: &str = ".unfinished-";
 
 /// All files of a result; `frames` is a folder beside them.
-const FILES: [&str; 7] = [
+const FILES: [&str; 8] = [
+    PREVIEW,
     TRANSIENT,
     "steady.exr",
     "steady.png",
@@ -88,6 +91,11 @@ impl ResultFolder {
     /// Where it is.
     pub(crate) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Where a render that goes on may show how far it is; removed when the result is written.
+    pub(crate) fn preview(&self) -> PathBuf {
+        self.path.join(PREVIEW)
     }
 
     /// Writes all files that this result has; those of an earlier one that it lacks are removed.

@@ -29,8 +29,8 @@ pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let setup = FilmSetup::new(&job.loaded.scene.film, job.plan.transport, &options)?;
     let folder = ResultFolder::prepare(&output(args, &job))?;
     let rendered = match job.plan.transport {
-        Transport::Mono => render::<1>(&job, &setup, &options, &started),
-        Transport::Rgb => render::<3>(&job, &setup, &options, &started),
+        Transport::Mono => render::<1>(&job, &setup, &options, &folder, &started),
+        Transport::Rgb => render::<3>(&job, &setup, &options, &folder, &started),
     }?;
     finish(&job, args, options, rendered, &folder)
 }
@@ -72,12 +72,14 @@ fn render<const C: usize>(
     job: &Job,
     setup: &FilmSetup,
     options: &RenderOptions,
+    folder: &ResultFolder,
     started: &Stopwatch,
 ) -> Result<Rendered, Failure> {
     let mut film = setup.film::<C>()?;
     with_threads(options.threads, || {
         let method = job.method::<C>()?;
-        let mut watch = Watch::new(options.run.budget);
+        let preview = options.pictures.map(|pictures| (folder.preview(), pictures));
+        let mut watch = Watch::new(options.run.budget, preview);
         let run = tpb_render::run(&*method, &mut film, &options.run, started, &mut watch);
         watch.finish();
         let method = MethodRecord::new(method.name(), method.options(), &job.integrator);

@@ -1,10 +1,12 @@
 //! Progress bar and ctrl-c.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
+use tpb_film::{Arrays, PictureOptions};
 use tpb_render::{Budget, Control, Progress};
 
 use crate::print;
@@ -20,12 +22,15 @@ pub(crate) struct Watch {
     bar: ProgressBar,
     budget: Budget,
     stop: Arc<AtomicBool>,
+    preview: Option<(PathBuf, PictureOptions)>,
 }
 
 impl Watch {
     /// Shows the bar and takes over ctrl-c: the first asks the run to end after its pass, the
     /// second ends the program at once.
-    pub(crate) fn new(budget: Budget) -> Self {
+    ///
+    /// The steady image so far is left in the file `preview` after 1, 2, 4, … passes.
+    pub(crate) fn new(budget: Budget, preview: Option<(PathBuf, PictureOptions)>) -> Self {
         let length = match budget {
             Budget::Passes(passes) => passes,
             Budget::Time(time) => milliseconds(time),
@@ -40,7 +45,16 @@ impl Watch {
         let (asked, shown) = (Arc::clone(&stop), bar.clone());
         // Where the system refuses a handler, ctrl-c aborts as usual.
         let _ = ctrlc::set_handler(move || on_interrupt(&asked, &shown));
-        Self { bar, budget, stop }
+        Self { bar, budget, stop, preview }
+    }
+
+    /// A preview that cannot be written is no reason to end: the result will say why.
+    fn preview(&self, passes: u64, steady: &dyn Fn() -> Arrays) {
+        if let Some((path, options)) = &self.preview
+            && passes.is_power_of_two()
+        {
+            let _ = steady().write_steady_png(path, options);
+        }
     }
 
     /// Takes the bar away.
@@ -62,7 +76,7 @@ impl Control for Watch {
         self.stop.load(Ordering::Relaxed)
     }
 
-    fn progress(&mut self, progress: &Progress) {
+    fn progress(&mut self, progress: &Progress, steady: &dyn Fn() -> Arrays) {
         let Progress { passes, elapsed, remaining, relative_error } = *progress;
         self.bar.set_position(match self.budget {
             Budget::Passes(_) => passes,
@@ -71,6 +85,7 @@ impl Control for Watch {
         let error = relative_error
             .map_or_else(String::new, |e| format!(", error {:.3} % (median of pixels)", 100.0 * e));
         let left = HumanDuration(remaining);
+        self.preview(passes, steady);
         let plural = if passes == 1 { "" } else { "es" };
         self.bar.set_message(format!("{passes} pass{plural}{error}, {left:#} left"));
     }

@@ -44,6 +44,23 @@ fn an_interrupt_writes_what_is_there() {
 }
 
 #[test]
+fn a_preview_is_there_while_the_render_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let preview = folder.path().join("result/preview.png");
+    let mut child = start(folder.path(), &[]);
+    let seen = (0..600).any(|_| {
+        sleep(Duration::from_millis(100));
+        preview.exists()
+    });
+    // Written under another name first: never half of it.
+    let png = std::fs::read(&preview).unwrap_or_default();
+    interrupt(&child);
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    assert!(seen && png.starts_with(b"\x89PNG") && png.ends_with(b"IEND\xae\x42\x60\x82"));
+    assert!(!preview.exists() && folder.path().join("result/steady.png").exists());
+}
+
+#[test]
 fn a_second_interrupt_aborts_within_the_pass() {
     let folder = tempfile::tempdir().unwrap();
     let code = WAITS.iter().find_map(|&wait| {
