@@ -19,7 +19,7 @@ fn photons(criterion: &mut Criterion) {
         plan: &plan,
         integrator,
         length: BeamLength::Long,
-        sampling: Sampling { sampler: Sampler::Sobol, thin_from: 2 },
+        sampling: Sampling { sampler: Sampler::Sobol, thin_from: 2, horizon: None },
     };
     let id = PassId { seed: 1, index: 0 };
     let mut group = criterion.benchmark_group("photons");

@@ -56,7 +56,8 @@ impl Gathers {
     pub fn drawn<K: RayBeamKernel>(&mut self, kernel: K) -> u64 {
         let Self { scene, beams, film, .. } = self;
         let edge = film.tile_edge(Grain::Coarse);
-        let sights = Sights::new(&scene.sensor, beams, kernel.radius(), (scene.film.height, edge));
+        let sights =
+            Sights::new(&scene.sensor, beams, (kernel.radius(), None), (scene.film.height, edge));
         let pairs = film.add_pass_by(Grain::Coarse, |tile| {
             let lattice = Lattice::new(&scene.sensor, tile, [0.5, 0.5]);
             let flights: Vec<_> =
@@ -79,7 +80,7 @@ impl Gathers {
     /// What [`Gathers::drawn`] prepares.
     pub fn seen<K: RayBeamKernel>(&self, kernel: K) {
         let rows = (self.scene.film.height, self.film.tile_edge(Grain::Coarse));
-        black_box(Sights::new(&self.scene.sensor, &self.beams, kernel.radius(), rows));
+        black_box(Sights::new(&self.scene.sensor, &self.beams, (kernel.radius(), None), rows));
     }
 
     /// All beams found by bundles of rays, as if these had been turned, and evaluated.

@@ -28,7 +28,7 @@ use tpb_optics::quasi::{self, Points};
 use tpb_optics::{Spectrum, Stream, seed_of};
 use tpb_render::PassId;
 use tpb_scene::{Flight, Hit, IntegratorSpec, LightPoint, Plan, Scene, Vertex};
-use tpb_transport::{Carrier, DiffuseLobe, Encounter, Response, Sampler, Turn, roulette};
+use tpb_transport::{Carrier, DiffuseLobe, Encounter, Horizon, Response, Sampler, Turn, roulette};
 
 use crate::beam::{Beam, CameraRay};
 use crate::beam_map::{BeamMap, Pairs};
@@ -63,6 +63,8 @@ pub(crate) struct Camera<'a, const C: usize, K> {
     pub(crate) sights: &'a Sights,
     /// For rays that mirrors, glass or rough surfaces have turned; `None` in scenes without.
     pub(crate) turned: Option<&'a BeamMap<'a, C>>,
+    /// What can still arrive in time; `None`: all counts.
+    pub(crate) horizon: Option<Horizon>,
     /// Those of caustics have a map of their own.
     pub(crate) photons: &'a [SurfaceMap<C>],
     pub(crate) kernel: K,
@@ -177,7 +179,7 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
     ) -> bool {
         let Some(hit) = flight.hit else { return false };
         path.arrive(self.scene, flight, &hit);
-        if path.throughput.is_zero() {
+        if path.throughput.is_zero() || self.is_beyond(path.opl, 0.0) {
             return false;
         }
         if let Some(share) = surface {
@@ -285,7 +287,8 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
                 continue;
             };
             let cosine = light.direction.dot(lobe.normal);
-            if cosine <= 0.0 || !lobe.allows(light.direction) {
+            let beyond = self.is_beyond(path.opl, light.distance);
+            if cosine <= 0.0 || !lobe.allows(light.direction) || beyond {
                 continue;
             }
             let way =
@@ -322,6 +325,12 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
                 }
             });
         }
+    }
+
+    /// Whether light that comes from so far away \[m\] to a path arrives too late.
+    #[inline]
+    pub(crate) fn is_beyond(&self, opl: f64, distance: f64) -> bool {
+        self.horizon.as_ref().is_some_and(|horizon| horizon.is_beyond(opl, distance))
     }
 
     /// Russian roulette between mirrors.

@@ -4,7 +4,7 @@ use tpb_film::{Grain, TransientFilm};
 use tpb_lanes::Instructions;
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Plan, Scene};
-use tpb_transport::Sampling;
+use tpb_transport::{Horizon, Sampling};
 
 use crate::beam::Beam;
 use crate::beam_map::{BeamMap, Pairs};
@@ -57,7 +57,7 @@ impl<'a> PhotonBeams<'a> {
     /// Sorts what photons left, and gathers it pixel by pixel.
     fn gather<const C: usize, K: RayBeamKernel>(
         &self,
-        id: PassId,
+        (id, horizon): (PassId, Option<Horizon>),
         film: &mut TransientFilm<C>,
         kernel: K,
         beams: &[Beam<C>],
@@ -66,10 +66,9 @@ impl<'a> PhotonBeams<'a> {
         let &Self { scene, plan, integrator, ref settings, instructions } = self;
         let radius = kernel.radius();
         let rows = (scene.film.height, film.tile_edge(Grain::Coarse));
-        let sights = &Sights::new(&scene.sensor, beams, radius, rows);
-        let turning = [&plan.refracting, &plan.mirrors, &plan.rough];
-        let turned = turning.iter().any(|shapes| !shapes.is_empty());
-        let turned = turned.then(|| BeamMap::new(kernel, beams).with_instructions(instructions));
+        let sights = &Sights::new(&scene.sensor, beams, (radius, horizon), rows);
+        let turned =
+            turns_rays(plan).then(|| BeamMap::new(kernel, beams).with_instructions(instructions));
         let camera = Camera {
             scene,
             plan,
@@ -78,6 +77,7 @@ impl<'a> PhotonBeams<'a> {
             beams,
             sights,
             turned: turned.as_ref(),
+            horizon,
             photons,
             kernel,
             instructions,
@@ -89,6 +89,11 @@ impl<'a> PhotonBeams<'a> {
         }
         pairs
     }
+}
+
+/// Whether mirrors, glass or rough surfaces turn rays from the eye.
+pub(crate) fn turns_rays(plan: &Plan) -> bool {
+    [&plan.refracting, &plan.mirrors, &plan.rough].iter().any(|shapes| !shapes.is_empty())
 }
 
 impl<const C: usize> Method<C> for PhotonBeams<'_> {
@@ -105,7 +110,9 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
         let Radii { beams: radius, surface, caustic } = settings.radii(id.index);
         let Settings { photons_per_pass, beam_photons, .. } = *settings;
         let Settings { length, sampler, thin_from, .. } = *settings;
-        let sampling = Sampling { sampler, thin_from };
+        let reach = radius.max(surface).max(caustic);
+        let horizon = film.only_window().map(|window| Horizon::new(scene, window, reach));
+        let sampling = Sampling { sampler, thin_from, horizon };
         let tracer = PhotonTracer { scene, plan, integrator: *integrator, length, sampling };
         let traced = tracer.trace::<C>(id, photons_per_pass, beam_photons);
         let surface_photons = (traced.surface.len() + traced.caustic.len()) as u64;
@@ -113,11 +120,11 @@ impl<const C: usize> Method<C> for PhotonBeams<'_> {
         if plan.caustic_photons {
             photons.push(SurfaceMap::new(traced.caustic, caustic));
         }
-        let beams = &traced.beams;
+        let (beams, at) = (&traced.beams, (id, horizon));
         let pairs = match settings.kernel {
-            KernelChoice::OneD => self.gather(id, film, Kernel1d { radius }, beams, &photons),
-            KernelChoice::TwoD => self.gather(id, film, Kernel2d { radius }, beams, &photons),
-            KernelChoice::ThreeD => self.gather(id, film, Kernel3d { radius }, beams, &photons),
+            KernelChoice::OneD => self.gather(at, film, Kernel1d { radius }, beams, &photons),
+            KernelChoice::TwoD => self.gather(at, film, Kernel2d { radius }, beams, &photons),
+            KernelChoice::ThreeD => self.gather(at, film, Kernel3d { radius }, beams, &photons),
         };
         let samples = settings.gather_samples.max(settings.surface_samples);
         let counts = Counts {

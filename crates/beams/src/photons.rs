@@ -20,6 +20,7 @@ use tpb_transport::{
 
 use crate::BeamLength;
 use crate::beam::{Attenuation, Beam, SurfacePhoton, visible_length};
+use crate::method::turns_rays;
 
 /// All that one pass's photons left.
 #[derive(Clone, Debug, Default)]
@@ -117,7 +118,13 @@ impl<const C: usize> PhotonVisitor<C> for Traces<'_, C> {
         let PhotonTracer { scene, plan, integrator, .. } = self.tracer;
         let connectable = || scene.emitters[photon.emitter].kind.can_be_connected();
         let owned_by_connections = photon.events == 0 && connectable();
-        if plan.surface_photons && !owned_by_connections && integrator.reaches(photon.depth()) {
+        let (position, opl) = (photon.vertex.position, photon.opl);
+        let in_time = self.tracer.sampling.horizon.as_ref().is_none_or(|horizon| {
+            !horizon.is_late(position, opl)
+                && (turns_rays(plan) || !horizon.is_early(position, opl))
+        });
+        let wanted = plan.surface_photons && !owned_by_connections && in_time;
+        if wanted && integrator.reaches(photon.depth()) {
             let caustic = photon.specular && plan.caustic_photons;
             let kept = if caustic { &mut self.caustic } else { &mut self.surface };
             kept.push(SurfacePhoton {
@@ -157,12 +164,21 @@ impl<const C: usize> Traces<'_, C> {
             }
         };
         let length = visible_length(coefficients, span_end - span.start);
-        if length > 0.0 && !power.is_zero() {
+        let (origin, direction) = (flight.at(span.start), flight.direction);
+        let opl = photon.opl + flight.opl(span.start);
+        let in_time = self.tracer.sampling.horizon.as_ref().is_none_or(|horizon| {
+            if turns_rays(self.tracer.plan) {
+                !horizon.is_late(origin, opl)
+            } else {
+                horizon.seen((origin, direction), length, opl).is_some()
+            }
+        });
+        if length > 0.0 && !power.is_zero() && in_time {
             self.beams.push(Beam {
-                origin: flight.at(span.start),
-                direction: flight.direction,
+                origin,
+                direction,
                 length,
-                opl: photon.opl + flight.opl(span.start),
+                opl,
                 power,
                 attenuation,
                 medium,

@@ -9,6 +9,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use tpb_scene::Sensor;
+use tpb_transport::Horizon;
 
 use crate::beam::Beam;
 
@@ -35,12 +36,22 @@ const EVERYWHERE: [f32; 2] = [f32::NEG_INFINITY, f32::INFINITY];
 const NOWHERE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 impl Sight {
-    /// Of a beam for kernels of `radius`.
-    pub(crate) fn new<const C: usize>(sensor: &Sensor, beam: &Beam<C>, radius: f64) -> Self {
-        let first = beam.origin - sensor.position;
-        let moment = first.cross(beam.direction);
-        let last = first + beam.length * beam.direction;
-        let radius = radius * (1.0 + SLACK) + ROUNDING * (first.length() + beam.length);
+    /// Of a beam for kernels of `radius`; of what of it may arrive in time, if that matters.
+    pub(crate) fn new<const C: usize>(
+        sensor: &Sensor,
+        beam: &Beam<C>,
+        (radius, horizon): (f64, Option<Horizon>),
+    ) -> Self {
+        let origin = beam.origin - sensor.position;
+        let moment = origin.cross(beam.direction);
+        let in_time = horizon.as_ref().map_or(Some([0.0, beam.length]), |horizon| {
+            horizon.seen((beam.origin, beam.direction), beam.length, beam.opl)
+        });
+        let Some([start, end]) = in_time else {
+            return Self { moment, columns: NOWHERE, rows: NOWHERE };
+        };
+        let (first, last) = (origin + start * beam.direction, origin + end * beam.direction);
+        let radius = radius * (1.0 + SLACK) + ROUNDING * (origin.length() + beam.length);
         let [columns, rows] = extent(sensor, [first, last], radius);
         Self { moment, columns, rows }
     }
@@ -98,14 +109,15 @@ pub struct Sights {
 }
 
 impl Sights {
-    /// For a film of `height` rows in tiles of `edge` rows.
+    /// For a film of `height` rows in tiles of `edge` rows, by kernels of some radius, of what may arrive
+    /// in time.
     pub fn new<const C: usize>(
         sensor: &Sensor,
         beams: &[Beam<C>],
-        radius: f64,
+        near: (f64, Option<Horizon>),
         (height, edge): (usize, usize),
     ) -> Self {
-        let all: Vec<_> = beams.par_iter().map(|beam| Sight::new(sensor, beam, radius)).collect();
+        let all: Vec<_> = beams.par_iter().map(|beam| Sight::new(sensor, beam, near)).collect();
         let rows = edge * BAND.div_ceil(edge);
         let bands = (0..height.div_ceil(rows))
             .into_par_iter()

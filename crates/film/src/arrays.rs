@@ -101,6 +101,28 @@ impl Arrays {
         })
     }
 
+    /// Forgets what arrived outside the window: `before` and `after` become 0, and the steady image
+    /// the sum of the bins (of continuous emission, the radiance at the last edge).
+    pub fn keep_window(&mut self) {
+        let (bins, channels) = (self.bins, self.channels);
+        if bins == 0 {
+            return;
+        }
+        let size = self.pixels() * channels;
+        let counted = match self.quantity {
+            Quantity::BinEnergy => bins,
+            Quantity::RadianceAtUpperEdges => 1,
+        };
+        self.steady = vec![0.0; size];
+        let cells = self.transient.chunks_exact(bins * channels);
+        for (sums, cells) in self.steady.chunks_exact_mut(channels).zip(cells) {
+            for cell in cells.rchunks_exact(channels).take(counted) {
+                sums.iter_mut().zip(cell).for_each(|(sum, &value)| *sum += f64::from(value));
+            }
+        }
+        (self.before, self.after) = (vec![0.0; size], vec![0.0; size]);
+    }
+
     /// Keeps only some bins, at least one; what the others hold goes to before and after. Used to
     /// drop the guard bins around a pulse. Does nothing unless cells hold bin energies and the
     /// range is within the bins and not empty.

@@ -63,6 +63,9 @@ impl<const C: usize> TransientFilm<C> {
         // Output channel → kept channel: itself, or the only one.
         let source = |channel: usize| channel.min(kept - 1);
         let outside = |which: usize| -> Vec<f64> {
+            if raw.outside.is_empty() && bins > 0 {
+                return vec![0.0; layout.pixels() * channels];
+            }
             let pixels = raw.outside.chunks_exact(2 * kept);
             let all = pixels.flat_map(|p| (0..channels).map(move |c| p[which * kept + source(c)]));
             all.map(|sum| sum / passes).collect()

@@ -42,6 +42,9 @@ pub struct FilmOptions {
     pub output: OutputChannels,
     /// Subtract from arrival times the OPL from the eye to the first surface that is not null.
     pub unwarp: bool,
+    /// Keep the bins alone: neither what arrives outside the window nor the steady image, whose place
+    /// the sum of the bins takes. Of no effect without a time axis.
+    pub window_only: bool,
 }
 
 /// Time-resolved image of `C` transported channels, averaged over passes.
@@ -56,7 +59,8 @@ pub struct TransientFilm<const C: usize> {
     squares: Vec<f32>,
     /// (pixel, block of cells): the pass that last reached it; empty without variance.
     reached: Vec<u32>,
-    /// Sums of what arrived before and after, (pixel, 2, channel); empty without a time axis.
+    /// Sums of what arrived before and after, (pixel, 2, channel); empty without a time axis, and if
+    /// the window alone is kept.
     outside: Vec<f64>,
     /// (pixel, channel).
     steady_mean: Vec<f64>,
@@ -96,7 +100,8 @@ impl<const C: usize> TransientFilm<C> {
     /// Values of each kind per pixel.
     fn sizes(layout: &Layout, options: FilmOptions) -> Sizes {
         let kept = Self::kept(options.output);
-        let (sums, outside) = (layout.bins() * kept, 2 * kept);
+        let sums = layout.bins() * kept;
+        let outside = if options.window_only { 0 } else { 2 * kept };
         let (squares, reached) =
             if options.variance { (sums, (layout.bins() + 2).div_ceil(BLOCK)) } else { (0, 0) };
         match layout.time {
@@ -118,6 +123,14 @@ impl<const C: usize> TransientFilm<C> {
     /// The options that it was made with.
     pub fn options(&self) -> &FilmOptions {
         &self.options
+    }
+
+    /// From when to when arrivals are kept \[m\], first to last edge, if all others are of no use:
+    /// the film keeps its window alone, and all of a pixel's times are counted from the emitter.
+    pub fn only_window(&self) -> Option<[f64; 2]> {
+        let FilmOptions { window_only, unwarp, .. } = self.options;
+        let time = self.layout.time.filter(|_| window_only && !unwarp);
+        time.map(|time| [time.start_opl, time.end()])
     }
 
     /// Passes so far.

@@ -1,6 +1,6 @@
 //! Where the light went: an energy balance of one render.
 //!
-//! emitted = absorbed in media + absorbed on surfaces + escaped + cut by depth
+//! emitted = absorbed in media + absorbed on surfaces + escaped + cut by depth + cut by window
 //!         + (lost − gained by Russian roulette),
 //!
 //! all weighted to luminance: of light in watts (joules for pulses), where light is traced, or of
@@ -22,6 +22,10 @@ pub struct Ledger {
     pub escaped: f64,
     /// Still alive when the depth limit ended its path.
     pub cut_by_depth: f64,
+    /// Still alive when nothing of its path could arrive within the window any more; 0 where what
+    /// arrives outside is kept.
+    #[serde(default)]
+    pub cut_by_window: f64,
     /// Of paths that Russian roulette ended.
     pub roulette_lost: f64,
     /// Added to paths that survived Russian roulette.
@@ -36,6 +40,7 @@ impl Ledger {
         self.absorbed_on_surfaces += other.absorbed_on_surfaces;
         self.escaped += other.escaped;
         self.cut_by_depth += other.cut_by_depth;
+        self.cut_by_window += other.cut_by_window;
         self.roulette_lost += other.roulette_lost;
         self.roulette_gained += other.roulette_gained;
     }
@@ -50,6 +55,7 @@ impl Ledger {
             absorbed_on_surfaces: self.absorbed_on_surfaces / count,
             escaped: self.escaped / count,
             cut_by_depth: self.cut_by_depth / count,
+            cut_by_window: self.cut_by_window / count,
             roulette_lost: self.roulette_lost / count,
             roulette_gained: self.roulette_gained / count,
         }
@@ -62,6 +68,7 @@ impl Ledger {
             + self.absorbed_on_surfaces
             + self.escaped
             + self.cut_by_depth
+            + self.cut_by_window
             + (self.roulette_lost - self.roulette_gained);
         let gap = self.emitted - ended;
         if gap == 0.0 { 0.0 } else { gap / self.emitted }
@@ -79,14 +86,15 @@ mod tests {
             Ledger { emitted: 4.0, absorbed_in_media: 3.0, escaped: 1.0, ..Ledger::default() },
             Ledger { emitted: 2.0, absorbed_on_surfaces: 2.5, roulette_gained: 0.5, ..sum },
             Ledger { emitted: 1.0, cut_by_depth: 0.25, roulette_lost: 0.75, ..sum },
+            Ledger { emitted: 1.0, cut_by_window: 0.75, escaped: 0.25, ..sum },
         ] {
             assert!(part.closure() == 0.0, "{part:?}");
             sum.add(&part);
         }
-        assert!(sum.emitted == 7.0 && sum.closure() == 0.0, "{sum:?}");
+        assert!(sum.emitted == 8.0 && sum.closure() == 0.0, "{sum:?}");
         let mean = sum.mean(2);
-        assert!(mean.emitted == 3.5 && mean.closure() == 0.0, "{mean:?}");
-        sum.escaped += 0.7;
+        assert!(mean.emitted == 4.0 && mean.closure() == 0.0, "{mean:?}");
+        sum.escaped += 0.8;
         assert!((sum.closure() + 0.1).abs() < 1e-15, "light from nowhere shows");
         let nothing_emitted = Ledger { escaped: 1.0, ..Ledger::default() };
         assert!(nothing_emitted.closure().is_infinite());

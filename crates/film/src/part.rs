@@ -22,7 +22,7 @@ pub(crate) struct Statistics<'a> {
     pub(crate) squares: &'a mut [f32],
     /// (pixel, block): the pass that last reached it, 0 for none; kept with squares.
     pub(crate) reached: &'a mut [u32],
-    /// Sums before and after, (pixel, 2, channel).
+    /// Sums before and after, (pixel, 2, channel), if they are kept.
     pub(crate) outside: &'a mut [f64],
     /// (pixel, channel).
     pub(crate) steady_mean: &'a mut [f64],
@@ -121,8 +121,11 @@ impl Statistics<'_> {
         total
     }
 
-    /// Adds what arrived before (0) or after (1).
+    /// Adds what arrived before (0) or after (1), if it is kept.
     fn add_outside<const K: usize>(&mut self, which: usize, value: [f64; K], total: &mut [f64; K]) {
+        if self.outside.is_empty() {
+            return;
+        }
         for channel in 0..K {
             self.outside[which * K + channel] += value[channel];
             total[channel] += value[channel];

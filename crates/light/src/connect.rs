@@ -7,8 +7,8 @@ use tpb_optics::warp::Equiangular;
 use tpb_optics::{Phase, Spectrum, Stream};
 use tpb_scene::{EmitterKind, IntegratorSpec, Region, Scene, Vertex};
 use tpb_transport::{
-    DiffuseLobe, FreeFlight, Lobe, Outcome, Photon, PhotonVisitor, RoughLobe, SurfaceArrival,
-    Towards,
+    DiffuseLobe, FreeFlight, Horizon, Lobe, Outcome, Photon, PhotonVisitor, RoughLobe,
+    SurfaceArrival, Towards,
 };
 
 use crate::sorted::Contribution;
@@ -19,6 +19,8 @@ pub(crate) struct Connections<'a, const C: usize> {
     integrator: IntegratorSpec,
     /// The film subtracts the time from the eye to the first surface.
     unwarp: bool,
+    /// What can still arrive in time; `None`: all counts.
+    horizon: Option<Horizon>,
     pub(crate) contributions: Vec<Contribution<C>>,
     /// Vertices in view whose connection was tried.
     pub(crate) tested: u64,
@@ -45,8 +47,12 @@ struct Seen {
 }
 
 impl<'a, const C: usize> Connections<'a, C> {
-    pub(crate) fn new(scene: &'a Scene, integrator: IntegratorSpec, unwarp: bool) -> Self {
-        Self { scene, integrator, unwarp, contributions: vec![], tested: 0 }
+    pub(crate) fn new(
+        scene: &'a Scene,
+        integrator: IntegratorSpec,
+        (unwarp, horizon): (bool, Option<Horizon>),
+    ) -> Self {
+        Self { scene, integrator, unwarp, horizon, contributions: vec![], tested: 0 }
     }
 
     /// Where on the film a point is seen, were nothing in between.
@@ -70,6 +76,13 @@ impl<'a, const C: usize> Connections<'a, C> {
     #[inline]
     fn connect(&mut self, source: &Source, seen: &Seen, intensity: Spectrum<C>) {
         if !self.integrator.counts(source.depth) || intensity.is_zero() {
+            return;
+        }
+        let position = source.vertex.position;
+        let early_or_late = |horizon: &Horizon| {
+            horizon.is_late(position, source.opl) || horizon.is_early(position, source.opl)
+        };
+        if self.horizon.as_ref().is_some_and(early_or_late) {
             return;
         }
         self.tested += 1;

@@ -4,7 +4,7 @@ use tpb_film::{Arrival, Ledger, TransientFilm};
 use tpb_optics::Spectrum;
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Plan, Scene, Transport};
-use tpb_transport::{PhotonBatch, PhotonTracer, Sampling};
+use tpb_transport::{Horizon, PhotonBatch, PhotonTracer, Sampling};
 
 use crate::connect::Connections;
 use crate::sorted::{Contribution, Sorted};
@@ -47,16 +47,22 @@ impl<'a, const C: usize> LightTracer<'a, C> {
     /// random numbers are those of no pass.
     fn bytes_per_photon(&self) -> f64 {
         let pilot = PhotonBatch { seed: 0, pass: u64::MAX, count: PILOT };
-        let (chunks, _) = self.trace(pilot, false);
+        let (chunks, _) = self.trace(pilot, false, None);
         let contributions = chunks.iter().map(|chunk| chunk.contributions.len());
         let bytes = size_of::<Contribution<C>>() + size_of::<(f64, Spectrum<C>)>();
         (contributions.sum::<usize>() * bytes) as f64 / PILOT as f64
     }
 
-    fn trace(&self, batch: PhotonBatch, unwarp: bool) -> (Vec<Connections<'a, C>>, Ledger) {
+    fn trace(
+        &self,
+        batch: PhotonBatch,
+        unwarp: bool,
+        horizon: Option<Horizon>,
+    ) -> (Vec<Connections<'a, C>>, Ledger) {
         let Self { scene, integrator, .. } = *self;
-        let photons = PhotonTracer { scene, integrator, sampling: Sampling::default() };
-        photons.trace(batch, |_| Connections::new(scene, integrator, unwarp))
+        let sampling = Sampling { horizon, ..Sampling::default() };
+        let photons = PhotonTracer { scene, integrator, sampling };
+        photons.trace(batch, |_| Connections::new(scene, integrator, (unwarp, horizon)))
     }
 
     /// All options, defaults filled in.
@@ -78,7 +84,8 @@ impl<const C: usize> Method<C> for LightTracer<'_, C> {
         let (pixels, unwarp) = (film.layout().pixels(), film.options().unwarp);
         let count = self.settings.photons_per_pass;
         let batch = PhotonBatch { seed: id.seed, pass: id.index, count };
-        let (chunks, ledger) = self.trace(batch, unwarp);
+        let horizon = film.only_window().map(|window| Horizon::new(self.scene, window, 0.0));
+        let (chunks, ledger) = self.trace(batch, unwarp, horizon);
         let connections = chunks.iter().map(|chunk| chunk.tested).sum();
         let chunks = chunks.into_iter().map(|chunk| chunk.contributions).collect();
         let sorted = Sorted::new(chunks, pixels);

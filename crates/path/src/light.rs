@@ -121,7 +121,7 @@ impl<const C: usize> Walk<'_, '_, C> {
         let towards = scattering(incident.direction);
         let value = towards.value / light.pdf * towards.radiance_factor();
         let throughput = throughput * incident.flux * value;
-        if throughput.is_zero() {
+        if throughput.is_zero() || self.world.is_beyond(opl, incident.distance) {
             return;
         }
         let (direction, distance) = (incident.direction, incident.distance);

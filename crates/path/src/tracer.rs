@@ -6,6 +6,7 @@ use tpb_film::{Ledger, Tile, TransientFilm};
 use tpb_optics::Stream;
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Media, Plan, Scene, Transport};
+use tpb_transport::Horizon;
 
 use crate::PathOptions;
 use crate::options::grid;
@@ -37,11 +38,17 @@ impl<'a, const C: usize> PathTracer<'a, C> {
             equiangular: plan.next_event_estimation && plan.media == Media::Scattering,
         };
         let share = 1.0 / f64::from(samples.get());
-        Self { world: World { scene, integrator, strategies, share }, samples }
+        Self { world: World { scene, integrator, strategies, share, horizon: None }, samples }
     }
 
     /// All paths of a tile's pixels; returns their ledger.
-    fn render(&self, id: PassId, width: usize, tile: &mut Tile<'_, C>) -> Ledger {
+    fn render(
+        &self,
+        world: &World<'_>,
+        id: PassId,
+        width: usize,
+        tile: &mut Tile<'_, C>,
+    ) -> Ledger {
         let mut ledger = Ledger::default();
         let (columns, rows) = grid(self.samples);
         for pixel in tile.pixels() {
@@ -51,8 +58,8 @@ impl<'a, const C: usize> PathTracer<'a, C> {
                 let (column, row) = (sample % columns, sample / columns);
                 let x = corner.0 + (f64::from(column) + rng.uniform()) / f64::from(columns);
                 let y = corner.1 + (f64::from(row) + rng.uniform()) / f64::from(rows);
-                let direction = self.world.scene.sensor.direction(x, y);
-                Walk::new(&self.world, direction, &mut rng, &mut ledger, (&mut *tile, pixel)).run();
+                let direction = world.scene.sensor.direction(x, y);
+                Walk::new(world, direction, &mut rng, &mut ledger, (&mut *tile, pixel)).run();
             }
         }
         ledger
@@ -74,8 +81,11 @@ impl<const C: usize> Method<C> for PathTracer<'_, C> {
 
     fn pass(&self, id: PassId, film: &mut TransientFilm<C>) -> PassReport {
         let layout = *film.layout();
+        let scene = self.world.scene;
+        let horizon = film.only_window().map(|window| Horizon::new(scene, window, 0.0));
+        let world = World { horizon, ..self.world };
         let mut report = PassReport::default();
-        for ledger in film.add_pass(|tile| self.render(id, layout.width, tile)) {
+        for ledger in film.add_pass(|tile| self.render(&world, id, layout.width, tile)) {
             report.ledger.add(&ledger);
         }
         let camera_paths = layout.pixels() as u64 * u64::from(self.samples.get());

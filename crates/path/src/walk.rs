@@ -47,6 +47,10 @@ impl<'a, 'f, const C: usize> Walk<'a, 'f, C> {
     pub(crate) fn run(mut self) {
         self.ledger.emitted += self.path.weight.luminance();
         while !self.path.weight.is_zero() {
+            if self.world.is_beyond(self.path.opl, 0.0) {
+                self.ledger.cut_by_window += self.path.weight.luminance();
+                return;
+            }
             let flight = self.world.scene.fly(&self.path.vertex, self.path.direction);
             if self.path.depth == 1 {
                 self.unwarp_opl = flight.hit.map_or(0.0, |hit| flight.opl(hit.distance));

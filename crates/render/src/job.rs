@@ -42,6 +42,9 @@ pub struct RenderOptions {
     pub variance: bool,
     /// Subtract from arrival times the OPL from the eye to the first surface that is not null.
     pub unwarp: bool,
+    /// Keep the bins alone: neither what arrives outside the window nor the steady image. Unless times
+    /// are unwarped, methods then leave out what can only arrive outside.
+    pub window_only: bool,
     /// The shape of the emitters' pulse; by default a delta.
     pub pulse: Pulse,
     /// How pictures are made; `None` makes none.
@@ -64,12 +67,22 @@ impl FilmSetup {
     /// The film that a scene's spec, the transported channels and the options ask for.
     ///
     /// # Errors
-    /// [`RenderError::Film`] for impossible layouts and pulses.
+    /// [`RenderError::Film`] for impossible layouts and pulses, and for a window alone where there is
+    /// none or where its light depends on what came before.
     pub fn new(
         spec: &FilmSpec,
         transport: Transport,
         options: &RenderOptions,
     ) -> Result<Self, RenderError> {
+        let RenderOptions { variance, unwarp, window_only, pulse, .. } = *options;
+        if window_only && spec.time.is_none() {
+            return Err(unsuitable("a film without a time axis has no window"));
+        }
+        if window_only && pulse == Pulse::Continuous {
+            return Err(unsuitable(
+                "continuous emission needs what arrived before the window, which is not kept",
+            ));
+        }
         let output = match (transport, spec.pixel_format) {
             (Transport::Mono, PixelFormat::Rgb) => OutputChannels::Rgb,
             (Transport::Rgb, PixelFormat::Luminance) => OutputChannels::Luminance,
@@ -82,7 +95,7 @@ impl FilmSetup {
         });
         // The window itself is checked before bins are added to it.
         let window = Layout::new(spec.width, spec.height, axis)?;
-        let guards = guard_bins(options.pulse, axis)?;
+        let guards = guard_bins(pulse, axis)?;
         let time = axis.map(|axis| TimeAxis {
             start_opl: axis.start_opl - guards.0 as f64 * axis.bin_width_opl,
             bins: axis.bins.saturating_add(guards.0).saturating_add(guards.1),
@@ -90,8 +103,8 @@ impl FilmSetup {
         });
         Ok(Self {
             layout: Layout::new(spec.width, spec.height, time)?,
-            options: FilmOptions { variance: options.variance, output, unwarp: options.unwarp },
-            pulse: options.pulse,
+            options: FilmOptions { variance, output, unwarp, window_only },
+            pulse,
             guards,
             bins: window.bins(),
         })
@@ -131,15 +144,22 @@ impl FilmSetup {
         film: TransientFilm<C>,
     ) -> Result<(Arrays, PulseReport), RenderError> {
         let mut arrays = film.into_arrays();
-        if self.pulse == Pulse::Delta {
-            return Ok((arrays, EXACT));
+        let mut report = EXACT;
+        if self.pulse != Pulse::Delta {
+            report = arrays.apply_pulse(self.pulse)?;
         }
-        let report = arrays.apply_pulse(self.pulse)?;
         if self.guards != (0, 0) {
             arrays.crop_bins(self.guards.0..self.guards.0 + self.bins);
         }
+        if self.options.window_only {
+            arrays.keep_window();
+        }
         Ok((arrays, report))
     }
+}
+
+fn unsuitable(reason: &'static str) -> RenderError {
+    FilmError::Unsuitable(reason).into()
 }
 
 /// How many bins before and after a window a pulse reaches, from the pulse's own report on a row
@@ -245,6 +265,11 @@ mod tests {
         assert!(matches!(error, Err(RenderError::Film(FilmError::Pulse(_)))), "{error:?}");
         let empty = FilmSpec { width: 0, ..spec(PixelFormat::Rgb) };
         assert!(new(&empty, Pulse::Delta).is_err());
+        for (spec, pulse) in [(steady, Pulse::Delta), (spec(PixelFormat::Rgb), Pulse::Continuous)] {
+            let options = RenderOptions { window_only: true, ..with_pulse(pulse) };
+            let error = FilmSetup::new(&spec, Transport::Mono, &options);
+            assert!(matches!(error, Err(RenderError::Film(FilmError::Unsuitable(_)))), "{error:?}");
+        }
         let second = new(&spec(PixelFormat::Rgb), Pulse::gaussian_fwhm(1.0)).unwrap_err();
         assert!(second.to_string().contains("longer than"), "{second}");
     }

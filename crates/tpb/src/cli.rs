@@ -85,6 +85,11 @@ pub(crate) struct RenderArgs {
     #[arg(long)]
     pub(crate) unwarp: bool,
 
+    /// Keep the bins alone: neither what arrives outside the time window nor the steady image, so that
+    /// light that arrives outside need not be followed
+    #[arg(long)]
+    pub(crate) window_only: bool,
+
     /// Pulse of the emitters: delta, gaussian:30ps (full width at half maximum), box:50ps
     /// (duration), or continuous (switched on at time 0)
     #[arg(
@@ -113,6 +118,14 @@ pub(crate) struct PlanArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+
+    /// Of a render that keeps the bins alone
+    #[arg(long)]
+    pub(crate) window_only: bool,
+
+    /// Of a render that subtracts the time from the eye to the first surface
+    #[arg(long)]
+    pub(crate) unwarp: bool,
 
     #[command(flatten)]
     pub(crate) method: MethodArgs,

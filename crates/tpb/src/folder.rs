@@ -107,10 +107,18 @@ impl ResultFolder {
     ) -> Written {
         let mut written = Written::default();
         let at = |name: &str| self.path.join(name);
-        written.note(TRANSIENT, arrays.write_npz(&at(TRANSIENT)));
-        written.note("steady.exr", arrays.write_steady_exr(&at("steady.exr")));
+        // Then there is no steady image.
+        let window_only = report.options.window_only;
+        if window_only {
+            written.note(TRANSIENT, arrays.write_window_npz(&at(TRANSIENT)));
+        } else {
+            written.note(TRANSIENT, arrays.write_npz(&at(TRANSIENT)));
+            written.note("steady.exr", arrays.write_steady_exr(&at("steady.exr")));
+        }
         if let Some(options) = pictures {
-            written.note("steady.png", arrays.write_steady_png(&at("steady.png"), options));
+            if !window_only {
+                written.note("steady.png", arrays.write_steady_png(&at("steady.png"), options));
+            }
             if arrays.bins > 0 {
                 let animation = at("animation.png");
                 written.note("animation.png", write_animation(arrays, &animation, options));

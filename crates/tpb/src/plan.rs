@@ -8,13 +8,14 @@ use tpb_scene::Transport;
 
 use crate::cli::{JobArgs, MethodArg, MethodArgs, PlanArgs};
 use crate::failure::Failure;
-use crate::prepare::{Job, MethodSpec};
+use crate::prepare::{Job, Kept, MethodSpec};
 use crate::print;
 
 /// Prints the plan: of the method that is asked for, else of all methods, the one that `render`
 /// would choose first.
 pub(crate) fn run(args: &PlanArgs) -> Result<ExitCode, Failure> {
-    let job = Job::new(&args.job, &args.method)?;
+    let kept = Kept { window_only: args.window_only, unwarp: args.unwarp };
+    let job = Job::new(&args.job, &args.method, kept)?;
     let options = options(&job)?;
     if args.json {
         return print::out_and_done(&as_json(&job, &options));
@@ -27,7 +28,8 @@ pub(crate) fn run(args: &PlanArgs) -> Result<ExitCode, Failure> {
             MethodSpec::Light(_) => [MethodArg::Beams, MethodArg::Path],
         };
         for other in others {
-            let job = Job::new(&JobArgs { method: Some(other), ..args.job.clone() }, &args.method)?;
+            let of_other = JobArgs { method: Some(other), ..args.job.clone() };
+            let job = Job::new(&of_other, &args.method, kept)?;
             text.push('\n');
             text.push_str(&as_text(&job, &self::options(&job)?));
         }

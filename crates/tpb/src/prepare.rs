@@ -27,6 +27,15 @@ pub(crate) struct Job {
     pub(crate) method: MethodSpec,
 }
 
+/// What of the light is kept, and from when its times are counted.
+#[derive(Clone, Copy)]
+pub(crate) struct Kept {
+    /// The bins alone.
+    pub(crate) window_only: bool,
+    /// Times are counted from each pixel's first surface.
+    pub(crate) unwarp: bool,
+}
+
 /// A method with its options.
 #[derive(Clone, Debug)]
 pub(crate) enum MethodSpec {
@@ -40,7 +49,7 @@ pub(crate) enum MethodSpec {
 
 impl Job {
     /// Loads the scene and decides how to render it.
-    pub(crate) fn new(args: &JobArgs, own: &MethodArgs) -> Result<Self, Failure> {
+    pub(crate) fn new(args: &JobArgs, own: &MethodArgs, kept: Kept) -> Result<Self, Failure> {
         let overrides: Vec<Override> =
             args.set.iter().map(|text| Override::parse(text)).collect::<Result<_, _>>()?;
         let loaded = load::load_scene(&args.scene, &overrides)?;
@@ -52,7 +61,11 @@ impl Job {
             )));
         }
         let method = MethodSpec::new(args.method, own, &integrator)?;
-        let plan = Plan::new(&loaded.scene, &integrator).of_method(method.method());
+        let mut plan = Plan::new(&loaded.scene, &integrator);
+        if kept.window_only && plan.time_bins {
+            plan = plan.keeping_window_only(kept.unwarp);
+        }
+        let plan = plan.of_method(method.method());
         if integrator.max_depth.is_none() && !plan.endless.is_empty() {
             let reasons = plan.endless.join("; ");
             return Err(Failure::with_help(

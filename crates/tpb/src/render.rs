@@ -14,7 +14,7 @@ use tpb_scene::Transport;
 use crate::cli::RenderArgs;
 use crate::failure::Failure;
 use crate::folder::ResultFolder;
-use crate::prepare::Job;
+use crate::prepare::{Job, Kept};
 use crate::watch::Watch;
 use crate::{print, summary};
 
@@ -25,7 +25,8 @@ const PROGRAM: &str = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSI
 pub(crate) fn run(args: &RenderArgs) -> Result<ExitCode, Failure> {
     let started = Stopwatch::start();
     let options = options(args);
-    let job = Job::new(&args.job, &args.method)?;
+    let kept = Kept { window_only: args.window_only, unwarp: args.unwarp };
+    let job = Job::new(&args.job, &args.method, kept)?;
     let setup = FilmSetup::new(&job.loaded.scene.film, job.plan.transport, &options)?;
     let folder = ResultFolder::prepare(&output(args, &job))?;
     let rendered = match job.plan.transport {
@@ -46,6 +47,7 @@ fn options(args: &RenderArgs) -> RenderOptions {
         threads: args.threads.map(NonZero::get),
         variance: args.variance,
         unwarp: args.unwarp,
+        window_only: args.window_only,
         pulse: args.pulse,
         pictures: (!args.no_pictures).then(|| args.tone.pictures()),
     }

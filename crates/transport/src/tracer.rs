@@ -29,7 +29,7 @@ use tpb_scene::{Flight, Hit, IntegratorSpec, Scene, Vertex};
 
 use crate::carrier::absorb_on_surface;
 use crate::{
-    Carrier, Encounter, FreeFlight, Lobe, Outcome, Part, Photon, Response, RoughLobe,
+    Carrier, Encounter, FreeFlight, Horizon, Lobe, Outcome, Part, Photon, Response, RoughLobe,
     SurfaceArrival,
 };
 
@@ -120,19 +120,21 @@ pub enum Sampler {
 }
 
 /// How photons are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling {
     /// Where they start.
     pub sampler: Sampler,
     /// From so many events on, photons that have lost power are thinned out, so that those left carry
     /// what they began with; `u32::MAX`: roulette alone, from `rr_depth` on.
     pub thin_from: u32,
+    /// Photons end once nothing of them can arrive in time; `None`: all are followed.
+    pub horizon: Option<Horizon>,
 }
 
 impl Default for Sampling {
     /// Independent photons and roulette alone.
     fn default() -> Self {
-        Self { sampler: Sampler::default(), thin_from: u32::MAX }
+        Self { sampler: Sampler::default(), thin_from: u32::MAX, horizon: None }
     }
 }
 
@@ -206,9 +208,21 @@ impl<V> Walk<'_, V> {
         }
         self.ledger.emitted += photon.power.luminance();
         self.visitor.emission(&photon, rng);
-        while self.step(&mut photon, rng)
+        while self.is_in_time(&photon)
+            && self.step(&mut photon, rng)
             && photon.survives(&integrator, sampling.thin_from, rng, &mut self.ledger)
         {}
+    }
+
+    /// Whether anything of a photon may still arrive within the window; what may not is booked.
+    #[inline]
+    fn is_in_time<const C: usize>(&mut self, photon: &Photon<C>) -> bool {
+        let Some(horizon) = &self.tracer.sampling.horizon else { return true };
+        let late = horizon.is_late(photon.vertex.position, photon.opl);
+        if late {
+            self.ledger.cut_by_window += photon.power.luminance();
+        }
+        !late
     }
 
     /// One flight and the event at its end; whether there is light left to go on.

@@ -199,7 +199,7 @@ fn check_splat<K: RayBeamKernel>(
     let mut film = layout.film::<1>().unwrap();
     let edge = film.tile_edge(Grain::Coarse);
     assert!(edge > 4 && edge < 22, "several tiles of several pixels: {edge}");
-    let sights = Sights::new(&scene.sensor, &beams, kernel.radius(), (height, edge));
+    let sights = Sights::new(&scene.sensor, &beams, (kernel.radius(), None), (height, edge));
     let (offset, draw) = ([rng.uniform(), rng.uniform()], Stream::new(seed, 2, 0));
     let tiles = film.add_pass_by(Grain::Coarse, |tile| {
         let lattice = Lattice::new(&scene.sensor, tile, offset);

@@ -14,7 +14,7 @@ use tpb_transport::{Part, Photon, PhotonBatch, PhotonVisitor, SurfaceArrival};
 
 use crate::scenes;
 
-const SAMPLING: Sampling = Sampling { sampler: Sampler::Sobol, thin_from: 1 };
+const SAMPLING: Sampling = Sampling { sampler: Sampler::Sobol, thin_from: 1, horizon: None };
 
 /// Runs passes and develops the film.
 pub(crate) fn render(

@@ -113,7 +113,7 @@ fn a_film_becomes_the_arrays_that_it_can_copy() {
             .into_iter()
             .flat_map(|output| [(output, false), (output, true)])
     {
-        let options = FilmOptions { variance, output, unwarp: false };
+        let options = FilmOptions { variance, output, ..FilmOptions::default() };
         for time in [AXIS, None] {
             for passes in [0, 1, 3] {
                 let layout = Layout::new(7, 5, time).unwrap();

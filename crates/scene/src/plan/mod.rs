@@ -47,6 +47,8 @@ pub struct Plan {
     pub kernel: Kernel,
     /// The film keeps time bins.
     pub time_bins: bool,
+    /// It keeps them alone, and light that can only arrive outside their window is not followed.
+    pub culled_by_window: bool,
     /// What the run does, one line each.
     pub needs: Vec<Item>,
     /// What the run leaves out, one line each.
@@ -133,6 +135,7 @@ impl Plan {
             eye_connections: false,
             kernel: kernel(scene),
             time_bins: scene.film.time.is_some(),
+            culled_by_window: false,
             needs: vec![],
             left_out: vec![],
         };
@@ -154,6 +157,33 @@ impl Plan {
         let concerns = |item: &Item| item.methods.contains(&method);
         self.needs.retain(concerns);
         self.left_out.retain(concerns);
+        self
+    }
+
+    /// The same for a film that keeps its window alone: neither what arrives outside nor the steady
+    /// image. A film that `unwarp`s counts times from each pixel's first surface: there, when light
+    /// leaves its emitter does not tell whether it can arrive within the window.
+    #[must_use]
+    pub fn keeping_window_only(mut self, unwarp: bool) -> Self {
+        self.lose(ALL, "light outside the window", "the bins alone are kept, as asked");
+        let culled = |what: &str| {
+            if unwarp {
+                Ok("followed: times are counted from each pixel's first surface".to_owned())
+            } else {
+                Err(format!("{what} end once all that comes of them arrives after the window"))
+            }
+        };
+        self.note(PATH, "paths to after the window", culled("camera paths and connections"));
+        self.note(LIGHT, "photons to after the window", culled("photons and connections"));
+        let beams = "photons and camera paths";
+        self.note(BEAMS, "photons to after the window", culled(beams));
+        if self.beams {
+            let reason =
+                "what of a beam can arrive at the eye only before or after it is not drawn";
+            let decision = if unwarp { culled("") } else { Err(reason.to_owned()) };
+            self.note(BEAMS, "beams outside the window", decision);
+        }
+        self.culled_by_window = !unwarp;
         self
     }
 

@@ -8,6 +8,7 @@ mod reference;
 mod renders;
 mod snapshots;
 mod video;
+mod window;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
