@@ -5,7 +5,7 @@
 //! surfaces ([`crate::rough`]) to the first diffuse one. On each span of a medium it gathers beams.
 //! At the end it adds
 //!
-//! * emission, exact in time: unbiased;
+//! * emission, exact in time: unbiased; pixels that see lamps have more rays for it ([`crate::lamps`]);
 //! * direct light by next-event estimation through null boundaries: unbiased;
 //! * all other light by the density of surface photons: blurred over their disc
 //!   ([`crate::surface_map`]).
@@ -33,6 +33,7 @@ use tpb_transport::{Carrier, DiffuseLobe, Encounter, Horizon, Response, Sampler,
 use crate::beam::{Beam, CameraRay};
 use crate::beam_map::{BeamMap, Pairs};
 use crate::kernel::RayBeamKernel;
+use crate::lamps::LampPixels;
 use crate::scan::Lattice;
 use crate::sight::Sights;
 use crate::splat::{Splat, TileRays};
@@ -68,6 +69,8 @@ pub(crate) struct Camera<'a, const C: usize, K> {
     /// Those of caustics have a map of their own.
     pub(crate) photons: &'a [SurfaceMap<C>],
     pub(crate) kernel: K,
+    /// Which pixels get more rays that look for lamps.
+    pub(crate) lamps: &'a LampPixels,
     /// For the gather.
     pub(crate) instructions: Instructions,
 }
@@ -88,6 +91,9 @@ pub(crate) struct Path<const C: usize> {
     pub(crate) events: u32,
     /// Density of the direction \[1/sr\], if the last event was a rough one.
     pub(crate) drawn_with: Option<f64>,
+    /// Its part in the light of a lamp that it meets: rays that look for lamps bring the rest, but for what
+    /// rough surfaces show.
+    pub(crate) lamp_part: f64,
 }
 
 impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
@@ -105,10 +111,13 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
                 Points::new(seed_of(seed_of(id.seed, id.index), stream_item::pixel(pixel)))
             })
             .collect();
+        let lamp_parts: Vec<_> =
+            tile.pixels().map(|pixel| self.lamps.part_of_others(pixel, surface_samples)).collect();
         let first = tile.pixels().next().unwrap_or_default();
         let mut of_tile = Stream::new(id.seed, id.index, stream_item::tile(first));
         let shift = [of_tile.uniform(), of_tile.uniform()];
         let mut pairs = Pairs::default();
+        self.look_for_lamps(id, tile);
         for sample in 0..gather_samples.max(surface_samples) {
             let offset = sub_pixel(shift, sample);
             let lattice = Lattice::new(&self.scene.sensor, tile, offset);
@@ -125,7 +134,9 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
                 .zip(flights)
                 .map(|(place, flight)| {
                     let at = (place, sample);
-                    (Path::new(self.scene.eye(), at, lights[place], &flight), flight)
+                    let mut path = Path::new(self.scene.eye(), at, lights[place], &flight);
+                    path.lamp_part = lamp_parts[place];
+                    (path, flight)
                 })
                 .collect();
             while !wave.is_empty() {
@@ -183,7 +194,7 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             return false;
         }
         if let Some(share) = surface {
-            self.emission(path, &hit, share, tile);
+            self.emission(path, &hit, share * path.lamp_part, tile);
         }
         let encounter = Encounter::new(self.scene, flight, &hit, Carrier::Importance);
         let goes_on = match encounter.respond(rng) {
@@ -237,7 +248,13 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
     }
 
     /// Light of an emitter that is seen.
-    fn emission(&self, path: &mut Path<C>, hit: &Hit, share: f64, tile: &mut Tile<'_, C>) {
+    pub(crate) fn emission(
+        &self,
+        path: &mut Path<C>,
+        hit: &Hit,
+        share: f64,
+        tile: &mut Tile<'_, C>,
+    ) {
         if !self.integrator.counts(path.events + 1) {
             return;
         }
@@ -334,7 +351,7 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
     }
 
     /// Russian roulette between mirrors.
-    fn survives(&self, path: &mut Path<C>, rng: &mut Stream) -> bool {
+    pub(crate) fn survives(&self, path: &mut Path<C>, rng: &mut Stream) -> bool {
         if path.events < self.integrator.rr_depth {
             return true;
         }
@@ -345,7 +362,12 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
 
 impl<const C: usize> Path<C> {
     /// Before its first flight.
-    fn new(eye: Vertex, (place, sample): (usize, u32), lights: Points, flight: &Flight) -> Self {
+    pub(crate) fn new(
+        eye: Vertex,
+        (place, sample): (usize, u32),
+        lights: Points,
+        flight: &Flight,
+    ) -> Self {
         Self {
             place,
             sample,
@@ -357,11 +379,12 @@ impl<const C: usize> Path<C> {
             opl: 0.0,
             events: 0,
             drawn_with: None,
+            lamp_part: 1.0,
         }
     }
 
     /// Moves to the end of a flight.
-    fn arrive(&mut self, scene: &Scene, flight: &Flight, hit: &Hit) {
+    pub(crate) fn arrive(&mut self, scene: &Scene, flight: &Flight, hit: &Hit) {
         self.throughput *= flight.transmittance(scene, hit.distance);
         self.opl += flight.opl(hit.distance);
         self.vertex = Vertex {
@@ -372,7 +395,7 @@ impl<const C: usize> Path<C> {
     }
 
     /// A mirror or smooth glass.
-    fn turn(&mut self, turn: &Turn) {
+    pub(crate) fn turn(&mut self, turn: &Turn) {
         self.vertex.region = turn.region;
         let radiance = turn.eta_ratio * turn.eta_ratio;
         self.throughput *= turn.factor.channels() * radiance;

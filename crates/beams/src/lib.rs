@@ -42,6 +42,7 @@ pub mod kernel;
 pub mod kernel1d;
 pub mod kernel2d;
 pub mod kernel3d;
+mod lamps;
 mod method;
 mod options;
 pub mod photons;
@@ -57,11 +58,17 @@ pub use method::PhotonBeams;
 pub use options::{BeamLength, BeamOptions, KernelChoice, OptionError, Radii, Settings, Temporal};
 pub use tpb_transport::{Sampler, Sampling};
 
-/// Items of the random streams: photons count from 0, pixels from 2⁶³, tiles from 3·2⁶².
+/// Items of the random streams: photons count from 0, pixels from 2⁶³, their rays to lamps from 5·2⁶¹, tiles
+/// from 3·2⁶².
 pub(crate) mod stream_item {
     /// The stream of the tile whose first pixel this is.
     pub(crate) const fn tile(first: usize) -> u64 {
         (3 << 62) | first as u64
+    }
+
+    /// The stream of a pixel's rays to lamps.
+    pub(crate) const fn lamp(pixel: usize) -> u64 {
+        (5 << 61) | pixel as u64
     }
 
     /// The stream of a pixel.

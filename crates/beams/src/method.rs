@@ -13,6 +13,7 @@ use crate::kernel::RayBeamKernel;
 use crate::kernel1d::Kernel1d;
 use crate::kernel2d::Kernel2d;
 use crate::kernel3d::Kernel3d;
+use crate::lamps::LampPixels;
 use crate::options::Radii;
 use crate::photons::PhotonTracer;
 use crate::sight::Sights;
@@ -25,6 +26,7 @@ pub struct PhotonBeams<'a> {
     plan: &'a Plan,
     integrator: IntegratorSpec,
     settings: Settings,
+    lamps: LampPixels,
     instructions: Instructions,
 }
 
@@ -40,7 +42,10 @@ impl<'a> PhotonBeams<'a> {
         options: &BeamOptions,
     ) -> Result<Self, OptionError> {
         let settings = Settings::new(scene, plan, options)?;
-        Ok(Self { scene, plan, integrator, settings, instructions: Instructions::widest() })
+        let Settings { lamp_samples, surface_samples, .. } = settings;
+        let lamps = LampPixels::new(scene, plan, lamp_samples, surface_samples);
+        let instructions = Instructions::widest();
+        Ok(Self { scene, plan, integrator, settings, lamps, instructions })
     }
 
     /// With these vector instructions instead of the widest that the machine has: the same bits.
@@ -63,7 +68,7 @@ impl<'a> PhotonBeams<'a> {
         beams: &[Beam<C>],
         photons: &[SurfaceMap<C>],
     ) -> Pairs {
-        let &Self { scene, plan, integrator, ref settings, instructions } = self;
+        let &Self { scene, plan, integrator, ref settings, ref lamps, instructions } = self;
         let radius = kernel.radius();
         let rows = (scene.film.height, film.tile_edge(Grain::Coarse));
         let sights = &Sights::new(&scene.sensor, beams, (radius, horizon), rows);
@@ -80,6 +85,7 @@ impl<'a> PhotonBeams<'a> {
             horizon,
             photons,
             kernel,
+            lamps,
             instructions,
         };
         let found = film.add_pass_by(Grain::Coarse, |tile| camera.render(id, tile));

@@ -72,6 +72,9 @@ pub struct BeamOptions {
     pub gather_samples: Option<u32>,
     /// Camera paths per pixel and pass that end on a surface.
     pub surface_samples: Option<u32>,
+    /// Rays more per pass for pixels that see lamps, at most; 0 for none. In all they are as many as all
+    /// pixels' `surface_samples` at most.
+    pub lamp_samples: Option<u32>,
     /// Connections to light sources per camera path.
     pub light_samples: Option<u32>,
     /// Scattering events from which photons that have lost power are thinned out, so that those left
@@ -139,6 +142,8 @@ pub struct Settings {
     pub gather_samples: u32,
     /// Camera paths per pixel and pass that end on a surface.
     pub surface_samples: u32,
+    /// Rays more per pass for pixels that see lamps, at most; 0 if the plan has none.
+    pub lamp_samples: u32,
     /// Connections to light sources per camera path.
     pub light_samples: u32,
     /// Scattering events from which photons that have lost power are thinned out.
@@ -180,6 +185,8 @@ const SURFACE_BYTES: u64 = 400;
 const BEAM_BYTES: u64 = 4000;
 /// Connections to light sources per camera path, where there is a choice.
 const LIGHT_SAMPLES: u32 = 8;
+/// Rays more per pass for pixels that see lamps.
+const LAMP_SAMPLES: u32 = 64;
 /// Memory beyond which a pass is refused.
 const MOST_BYTES: u64 = 16 << 30;
 
@@ -236,6 +243,11 @@ impl Settings {
             beam_photons,
             gather_samples: options.gather_samples.unwrap_or(2),
             surface_samples: options.surface_samples.unwrap_or(4),
+            lamp_samples: if plan.lamp_rays {
+                options.lamp_samples.unwrap_or(LAMP_SAMPLES)
+            } else {
+                0
+            },
             light_samples: options.light_samples.unwrap_or_else(|| light_samples(scene)),
             thin_from: options.thin_from.unwrap_or(2),
             sampler: options.sampler.unwrap_or(Sampler::Sobol),

@@ -43,6 +43,7 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
         path.vertex.region = drawn.region;
         path.direction = drawn.direction;
         path.drawn_with = Some(drawn.density);
+        path.lamp_part = 1.0;
         true
     }
 

@@ -296,6 +296,11 @@ pub(crate) struct BeamArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) surface_samples: Option<u32>,
 
+    /// More rays per pass for pixels that see lamps, which look for these alone: at most so many, and in
+    /// all as many as other camera rays; 0 for none
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) lamp_samples: Option<u32>,
+
     /// Connections to light sources per camera ray
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) light_samples: Option<u32>,

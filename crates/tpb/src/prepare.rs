@@ -181,6 +181,7 @@ fn beam_options(args: &BeamArgs, photons: &PhotonArgs) -> BeamOptions {
         beam_photons: args.beam_photons,
         gather_samples: args.gather_samples,
         surface_samples: args.surface_samples,
+        lamp_samples: args.lamp_samples,
         light_samples: args.light_samples,
         thin_from: args.thin_from,
         sampler: args.sampler.map(|sampler| match sampler {

@@ -6,5 +6,6 @@ mod gather;
 mod instructions;
 mod kernel3d;
 mod kernels;
+mod lamps;
 mod scenes;
 mod transport;

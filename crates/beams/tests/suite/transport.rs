@@ -1,5 +1,7 @@
 //! Photons and whole passes: the ledger, depths, threads, and light that is known.
 
+use std::ops::Range;
+
 use glam::DVec3;
 use tpb_beams::photons::PhotonTracer;
 use tpb_beams::{BeamLength, BeamOptions, KernelChoice, PhotonBeams, Sampler, Sampling, Temporal};
@@ -23,6 +25,16 @@ pub(crate) fn render(
     options: &BeamOptions,
     passes: u64,
 ) -> (Arrays, PassReport) {
+    render_passes(scene, integrator, options, 0..passes)
+}
+
+/// Only these passes.
+pub(crate) fn render_passes(
+    scene: &Scene,
+    integrator: IntegratorSpec,
+    options: &BeamOptions,
+    passes: Range<u64>,
+) -> (Arrays, PassReport) {
     let plan = Plan::new(scene, &integrator);
     let method = PhotonBeams::new(scene, &plan, integrator, options).expect("sound options");
     let axis = scene.film.time.map(|t| TimeAxis {
@@ -34,7 +46,7 @@ pub(crate) fn render(
     let statistics = FilmOptions { variance: true, ..Default::default() };
     let mut film = TransientFilm::<1>::new(layout, statistics).expect("a film");
     let mut report = PassReport::default();
-    for index in 0..passes {
+    for index in passes {
         report.add(&method.pass(PassId { seed: 5, index }, &mut film));
     }
     assert_eq!(film.non_finite(), 0);

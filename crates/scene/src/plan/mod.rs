@@ -39,6 +39,8 @@ pub struct Plan {
     pub surface_photons: bool,
     /// Some of them are of caustics, or of spots of lasers.
     pub caustic_photons: bool,
+    /// Pixels that see emitters with an area get more rays for these.
+    pub lamp_rays: bool,
     /// Light is connected from emitters to media and surfaces.
     pub next_event_estimation: bool,
     /// Photons are connected from emitters, surfaces and media to the pinhole.
@@ -131,6 +133,7 @@ impl Plan {
             beams: false,
             surface_photons: false,
             caustic_photons: false,
+            lamp_rays: false,
             next_event_estimation: false,
             eye_connections: false,
             kernel: kernel(scene),
@@ -143,6 +146,7 @@ impl Plan {
         plan.decide_media(scene);
         plan.decide_beams(scene, integrator);
         plan.decide_surfaces(scene, integrator);
+        plan.decide_lamp_rays(scene, integrator);
         plan.decide_connections(scene, integrator);
         plan.decide_eye_connections(scene, integrator);
         plan.tell_lost_light(scene, integrator);
@@ -282,6 +286,18 @@ impl Plan {
             };
             self.caustic_photons = self.note(BEAMS, "a disc for caustics", decision);
         }
+    }
+
+    fn decide_lamp_rays(&mut self, scene: &Scene, integrator: &IntegratorSpec) {
+        let straight_only = self.refracting.is_empty() && self.mirrors.is_empty();
+        let decision = if !has_lamps(scene) {
+            Err("no emitter has an area")
+        } else if !integrator.reaches(1) || (straight_only && !integrator.counts(1)) {
+            Err("depths leave out emitters that are seen")
+        } else {
+            Ok("emitters that are seen have sharp edges")
+        };
+        self.lamp_rays = self.note(BEAMS, "more rays to lamps", owned(decision));
     }
 
     /// Beams connect at surfaces only, the path tracer in media too.

@@ -70,7 +70,7 @@ fn differences(path: &str, old: &Value, new: &Value, changes: &mut Vec<String>) 
 }
 
 /// Options that the command line has a flag for, by their names in reports.
-const FLAGS: [(&str, &str); 16] = [
+const FLAGS: [(&str, &str); 17] = [
     ("kernel", "--kernel"),
     ("length", "--beam-length"),
     ("temporal", "--temporal"),
@@ -82,6 +82,7 @@ const FLAGS: [(&str, &str); 16] = [
     ("beam_photons", "--beam-photons"),
     ("gather_samples", "--gather-samples"),
     ("surface_samples", "--surface-samples"),
+    ("lamp_samples", "--lamp-samples"),
     ("light_samples", "--light-samples"),
     ("thin_from", "--thin-from"),
     ("sampler", "--sampler"),
