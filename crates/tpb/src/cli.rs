@@ -50,6 +50,7 @@ Examples:
 
 Ctrl-c ends the render after the pass and writes what is there; once more, it aborts.
 Exit codes: 0 done; 1 done, but the result is not sound; 2 bad usage, input or files.")]
+#[expect(clippy::struct_excessive_bools, reason = "each is one independent flag")]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) job: JobArgs,
