@@ -1,16 +1,19 @@
 //! How a pass enters the statistics of a tile's pixels.
 //!
 //! Where pixels have many cells, only those that were reached are visited: deposits mark blocks of
-//! [`BLOCK`] cells in the scratch, and eight blocks without a mark cost one comparison. So a pass of
-//! few samples on a film of very many bins hardly pays for its bins. The scratch is cleared on the way.
+//! [`BLOCK`] cells in the scratch, and groups of 64 of them where there are very many. Sums of such
+//! films are in no cache: all that a pixel's pass reached are touched first, one independent read each, so
+//! that the machine waits for memory once and not once for each. So a pass of few samples on a film
+//! of very many bins hardly pays for its bins. The scratch is cleared on the way.
 
+use std::hint::black_box;
 use std::mem::replace;
 use std::ops::Range;
 
 use tpb_optics::Spectrum;
 
 use crate::stats::{Pass, add_to_moments};
-use crate::tile::{BLOCK, Scratch};
+use crate::tile::{BLOCK, Reached, Scratch};
 
 /// Statistics of some pixels, one after the other; what is not kept is empty.
 pub(crate) struct Statistics<'a> {
@@ -80,11 +83,12 @@ impl Part<'_> {
         let pixels = self.columns.len();
         let rows = self.statistics.into_iter();
         let all = rows.flat_map(|mut row| (0..pixels).map(move |_| row.split_off(1, sizes)));
-        for (mut pixel, (cells, marks)) in all.zip(scratch.pixels()) {
+        for (index, mut pixel) in all.enumerate() {
+            let reached = scratch.pixel(index);
             let sum = if sizes.sums == 0 {
-                keep(&replace(&mut cells[0], Spectrum::ZERO))
+                keep(&replace(&mut reached.cells[0], Spectrum::ZERO))
             } else {
-                pixel.add(cells, marks, keep, pass)
+                pixel.add(reached, keep, pass)
             };
             let mean = pixel.steady_mean.as_chunks_mut().0;
             let squares = pixel.steady_squares.as_chunks_mut().0;
@@ -97,28 +101,46 @@ impl Statistics<'_> {
     /// Adds a pass to the cells of one pixel; returns its sum over cells.
     fn add<const C: usize, const K: usize>(
         &mut self,
-        cells: &mut [Spectrum<C>],
-        marks: &mut [u8],
+        mut reached: Reached<'_, C>,
         keep: impl Fn(&Spectrum<C>) -> [f64; K] + Copy,
         pass: Pass,
     ) -> [f64; K] {
         let after = self.sums.len() / K + 1;
+        if reached.marking {
+            reached.list();
+            self.touch::<K>(reached.blocks);
+        }
+        let Reached { cells, marks, marking, blocks, .. } = reached;
         let mut total = [0.0; K];
         self.add_outside(0, keep(&replace(&mut cells[0], Spectrum::ZERO)), &mut total);
-        for (eight, marks) in marks.chunks_mut(8).enumerate() {
-            if marks.iter().fold(0, |any, mark| any | mark) == 0 {
-                continue;
+        let mut add = |block: usize| {
+            let range = (BLOCK * block).max(1)..(BLOCK * (block + 1)).min(after);
+            self.add_block(block, range, cells, keep, pass, &mut total);
+        };
+        if marking {
+            for &block in blocks.iter() {
+                add(block as usize);
             }
-            for (block, mark) in marks.iter_mut().enumerate() {
-                if replace(mark, 0) > 0 {
-                    let block = 8 * eight + block;
-                    let range = (BLOCK * block).max(1)..(BLOCK * (block + 1)).min(after);
-                    self.add_block(block, range, cells, keep, pass, &mut total);
-                }
+        } else {
+            for block in 0..marks.len() {
+                add(block);
             }
         }
         self.add_outside(1, keep(&replace(&mut cells[after], Spectrum::ZERO)), &mut total);
         total
+    }
+
+    /// Reads one value of each block, all of which are needed next.
+    fn touch<const K: usize>(&self, blocks: &[u32]) {
+        let mut read = 0;
+        for &block in blocks {
+            // Bin b is cell b + 1.
+            let first = ((BLOCK * block as usize).max(1) - 1) * K;
+            for values in [&*self.sums, &*self.squares] {
+                read ^= values.get(first).map_or(0, |value| value.to_bits());
+            }
+        }
+        black_box(read);
     }
 
     /// Adds what arrived before (0) or after (1), if it is kept.

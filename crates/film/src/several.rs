@@ -5,7 +5,7 @@ use tpb_optics::Spectrum;
 
 use crate::arrival::{Arrival, TemporalProfile};
 use crate::layout::Clock;
-use crate::tile::{BLOCK, Tile};
+use crate::tile::{BLOCK, GROUP, Tile};
 
 /// Instants at once.
 #[derive(Clone, Copy, Debug)]
@@ -186,6 +186,7 @@ impl<const C: usize> Tile<'_, C> {
         if self.marking {
             for cell in cells {
                 self.marks[*cell as usize / BLOCK] = 1;
+                self.groups[*cell as usize / GROUP] = 1;
             }
         }
         for lane in 0..LANES {

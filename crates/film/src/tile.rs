@@ -5,6 +5,7 @@
 //! atomics, and their division depends on the film and the method's [`Grain`] alone, so that results
 //! do not depend on threads.
 
+use std::mem::replace;
 use std::ops::Range;
 
 use tpb_optics::Spectrum;
@@ -15,6 +16,12 @@ use crate::profile::{NotFinite, Workspace, instant, spread};
 
 /// Cells that share a mark.
 pub(crate) const BLOCK: usize = 16;
+
+/// Cells that share a mark of the second level: marks of 64 blocks.
+pub(crate) const GROUP: usize = 64 * BLOCK;
+
+/// Pixels of fewer cells have no second level.
+const MANY_CELLS: usize = 4096;
 
 /// Pixels of fewer cells are visited whole: finding out which of them were reached is dearer.
 const FEW_CELLS: usize = 512;
@@ -64,6 +71,10 @@ pub(crate) struct Scratch<const C: usize> {
     cells: Vec<Spectrum<C>>,
     /// (pixel, block); not used without a time axis.
     marks: Vec<u8>,
+    /// (pixel, group of blocks); of use where pixels have [`MANY_CELLS`].
+    groups: Vec<u8>,
+    /// Blocks of one pixel.
+    reached: Vec<u32>,
     stride: usize,
     workspace: Workspace<C>,
 }
@@ -71,17 +82,29 @@ pub(crate) struct Scratch<const C: usize> {
 impl<const C: usize> Default for Scratch<C> {
     fn default() -> Self {
         let workspace = Workspace::default();
-        Self { cells: Vec::new(), marks: Vec::new(), stride: 1, workspace }
+        Self {
+            cells: Vec::new(),
+            marks: Vec::new(),
+            groups: Vec::new(),
+            reached: Vec::new(),
+            stride: 1,
+            workspace,
+        }
     }
 }
 
 impl<const C: usize> Scratch<C> {
     /// Room for so many pixels.
     pub(crate) fn prepare(&mut self, pixels: usize, clock: Option<Clock>) {
-        self.stride = clock.map_or(1, |clock| clock.cells().next_multiple_of(BLOCK));
+        self.stride = clock.map_or(1, |clock| {
+            let cells = clock.cells();
+            cells.next_multiple_of(if cells > MANY_CELLS { GROUP } else { BLOCK })
+        });
         self.cells.resize(pixels * self.stride, Spectrum::ZERO);
         self.marks.clear();
         self.marks.resize(pixels * self.stride.div_ceil(BLOCK), u8::from(!self.marks_cells()));
+        self.groups.clear();
+        self.groups.resize((pixels * self.stride).div_ceil(GROUP), 0);
     }
 
     /// Whether deposits mark blocks; else all are marked from the start.
@@ -89,10 +112,68 @@ impl<const C: usize> Scratch<C> {
         self.stride > FEW_CELLS
     }
 
-    /// Cells and marks of each pixel.
-    pub(crate) fn pixels(&mut self) -> impl Iterator<Item = (&mut [Spectrum<C>], &mut [u8])> {
-        let cells = self.cells.chunks_exact_mut(self.stride);
-        cells.zip(self.marks.chunks_exact_mut(self.stride.div_ceil(BLOCK)))
+    /// The cells of pixel number `index`, and what of them was reached.
+    #[inline]
+    pub(crate) fn pixel(&mut self, index: usize) -> Reached<'_, C> {
+        let marking = self.marks_cells();
+        let Self { cells, marks, groups, reached, stride, .. } = self;
+        let blocks = stride.div_ceil(BLOCK);
+        let groups = if *stride > MANY_CELLS {
+            let count = *stride / GROUP;
+            &mut groups[index * count..(index + 1) * count]
+        } else {
+            &mut []
+        };
+        Reached {
+            cells: &mut cells[index * *stride..(index + 1) * *stride],
+            marks: &mut marks[index * blocks..(index + 1) * blocks],
+            groups,
+            marking,
+            blocks: reached,
+        }
+    }
+}
+
+/// What a pass left in one pixel.
+pub(crate) struct Reached<'a, const C: usize> {
+    pub(crate) cells: &'a mut [Spectrum<C>],
+    /// One for each block of cells.
+    pub(crate) marks: &'a mut [u8],
+    /// One for each 64 of them; empty without a second level.
+    pub(crate) groups: &'a mut [u8],
+    /// Whether marks say which blocks were reached; else all are visited.
+    pub(crate) marking: bool,
+    /// Room for a list of them.
+    pub(crate) blocks: &'a mut Vec<u32>,
+}
+
+impl<const C: usize> Reached<'_, C> {
+    /// Lists the blocks that were reached, in their order, and clears all marks.
+    pub(crate) fn list(&mut self) {
+        self.blocks.clear();
+        if self.groups.is_empty() {
+            return list_marks(self.marks, 0, self.blocks);
+        }
+        let marks = self.marks.chunks_exact_mut(GROUP / BLOCK);
+        for ((group, marks), number) in self.groups.iter_mut().zip(marks).zip(0..) {
+            if replace(group, 0) > 0 {
+                list_marks(marks, number * (GROUP / BLOCK) as u32, self.blocks);
+            }
+        }
+    }
+}
+
+/// Lists the marks that are set, counted from `first`, and clears them.
+fn list_marks(marks: &mut [u8], first: u32, blocks: &mut Vec<u32>) {
+    for (eight, first) in marks.chunks_mut(8).zip((first..).step_by(8)) {
+        if eight.iter().fold(0, |any, mark| any | mark) == 0 {
+            continue;
+        }
+        for (mark, block) in eight.iter_mut().zip(first..) {
+            if replace(mark, 0) > 0 {
+                blocks.push(block);
+            }
+        }
     }
 }
 
@@ -107,6 +188,7 @@ pub struct Tile<'a, const C: usize> {
     pub(crate) cells_per_pixel: usize,
     pub(crate) cells: &'a mut [Spectrum<C>],
     pub(crate) marks: &'a mut [u8],
+    pub(crate) groups: &'a mut [u8],
     /// Whether deposits have to mark what they reach.
     pub(crate) marking: bool,
     workspace: &'a mut Workspace<C>,
@@ -124,7 +206,7 @@ impl<'a, const C: usize> Tile<'a, C> {
         scratch: &'a mut Scratch<C>,
     ) -> Self {
         let marking = scratch.marks_cells();
-        let Scratch { cells, marks, stride, workspace } = scratch;
+        let Scratch { cells, marks, groups, stride, workspace, .. } = scratch;
         let cells_per_pixel = *stride;
         Self {
             columns,
@@ -135,6 +217,7 @@ impl<'a, const C: usize> Tile<'a, C> {
             cells_per_pixel,
             cells,
             marks,
+            groups,
             marking,
             workspace,
             non_finite: 0,
@@ -217,8 +300,9 @@ impl<'a, const C: usize> Tile<'a, C> {
         match added {
             Ok(_) if !self.marking => {}
             Ok(reached) => {
-                let blocks = (first + reached.start) / BLOCK..=(first + reached.end - 1) / BLOCK;
-                self.marks[blocks].fill(1);
+                let (from, last) = (first + reached.start, first + reached.end - 1);
+                self.marks[from / BLOCK..=last / BLOCK].fill(1);
+                self.groups[from / GROUP..=last / GROUP].fill(1);
             }
             Err(NotFinite) => self.non_finite += 1,
         }
