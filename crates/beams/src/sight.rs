@@ -24,8 +24,6 @@ const BAND: usize = 64;
 /// A beam as the camera sees it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sight {
-    /// (origin − eye) × direction \[m\].
-    pub(crate) moment: DVec3,
     /// First and last column that may meet it, as film coordinates; first > last if none.
     pub(crate) columns: [f32; 2],
     /// Likewise the rows.
@@ -43,17 +41,16 @@ impl Sight {
         (radius, horizon): (f64, Option<Horizon>),
     ) -> Self {
         let origin = beam.origin - sensor.position;
-        let moment = origin.cross(beam.direction);
         let in_time = horizon.as_ref().map_or(Some([0.0, beam.length]), |horizon| {
             horizon.seen((beam.origin, beam.direction), beam.length, beam.opl)
         });
         let Some([start, end]) = in_time else {
-            return Self { moment, columns: NOWHERE, rows: NOWHERE };
+            return Self { columns: NOWHERE, rows: NOWHERE };
         };
         let (first, last) = (origin + start * beam.direction, origin + end * beam.direction);
         let radius = radius * (1.0 + SLACK) + ROUNDING * (origin.length() + beam.length);
         let [columns, rows] = extent(sensor, [first, last], radius);
-        Self { moment, columns, rows }
+        Self { columns, rows }
     }
 }
 
@@ -100,10 +97,9 @@ fn hull(sensor: &Sensor, ends: [DVec3; 2], radius: f64) -> [[f32; 2]; 2] {
 
 /// The beams of one pass as the camera sees them, and by rows of the film.
 pub struct Sights {
-    /// Of each beam.
-    pub(crate) all: Vec<Sight>,
-    /// The beams that may be seen in each band of rows, in their order.
-    bands: Vec<Vec<u32>>,
+    /// The beams that may be seen in each band of rows, in their order. What is seen of them lies beside:
+    /// a tile reads it of all, and most of the beams themselves never.
+    bands: Vec<Vec<(u32, Sight)>>,
     /// Rows of a band.
     rows: usize,
 }
@@ -124,14 +120,14 @@ impl Sights {
             .map(|band| {
                 let (first, last) = ((band * rows) as f32, ((band + 1) * rows) as f32);
                 let seen = |sight: &Sight| sight.rows[0] <= last && sight.rows[1] >= first;
-                (0..).zip(&all).filter(|(_, sight)| seen(sight)).map(|(index, _)| index).collect()
+                (0..).zip(all.iter().copied()).filter(|(_, sight)| seen(sight)).collect()
             })
             .collect();
-        Self { all, bands, rows }
+        Self { bands, rows }
     }
 
     /// The beams that a tile may see, and more; `row` is its first.
-    pub(crate) fn listed(&self, row: usize) -> &[u32] {
+    pub(crate) fn listed(&self, row: usize) -> &[(u32, Sight)] {
         &self.bands[row / self.rows]
     }
 }

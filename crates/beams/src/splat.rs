@@ -232,19 +232,22 @@ impl<const C: usize, K: RayBeamKernel> Splat<'_, C, K> {
         let radius = kernel.radius() * (1.0 + 1e-9);
         let mut found = vec![Knot::default(); lattice.room()];
         let mut pairs = Pairs::default();
-        for &index in sights.listed(tile.rows().start) {
-            let (sight, beam) = (&sights.all[index as usize], &beams[index as usize]);
-            if !lattice.sees(sight) || !counts(beam.depth) {
+        for (index, sight) in sights.listed(tile.rows().start) {
+            if !lattice.sees(sight) {
                 continue;
             }
-            let (d, m) = (beam.direction, sight.moment);
+            let beam = &beams[*index as usize];
+            if !counts(beam.depth) {
+                continue;
+            }
+            let from_eye = beam.origin - rays.scene.sensor.position;
+            let (d, m) = (beam.direction, from_eye.cross(beam.direction));
             let (moment, cosine) = (lattice.form(m), lattice.form(d));
             let line = Line { d, m, moment, cosine, radius };
             let count = lattice.scan(simd, sight, &line, &mut found);
             if count == 0 {
                 continue;
             }
-            let from_eye = beam.origin - rays.scene.sensor.position;
             let drawn = Drawn { beam, from_eye, moment, cosine, share, temporal };
             pairs.tested += count as u64;
             pairs.accepted += kernel.draw(simd, &drawn, rays, &found[..count], tile);

@@ -30,7 +30,6 @@ impl<const C: usize> Shade<C> for Shade1d {
         let mut accepted = zero;
         for index in 0..vectors::<S>() {
             let pairs = beam.pairs(simd, loaded, index);
-            pairs.places.store(&mut instants.places, index);
             let inverse = one / pairs.squared.sqrt();
             let way = pairs.foot * (inverse * inverse);
             let along_ray = way * pairs.norm;
@@ -41,6 +40,8 @@ impl<const C: usize> Shade<C> for Shade1d {
                 .and(along_ray.less(pairs.end))
                 .and(zero.at_most(along_beam))
                 .and(along_beam.less(F64s::splat(simd, beam.length)));
+            // What is not wanted adds nothing to the first pixel, whose cells are at hand.
+            wanted.of(pairs.places).store(&mut instants.places, index);
             let mut density = pairs.norm * inverse * (0.5 / self.radius);
             if PEAKED {
                 density = density * beam.phase(simd, pairs.cosine / pairs.norm);

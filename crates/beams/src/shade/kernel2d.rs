@@ -37,7 +37,6 @@ impl<const C: usize> Shade<C> for Shade2d {
         let mut accepted = zero;
         for index in 0..vectors::<S>() {
             let pairs = beam.pairs(simd, loaded, index);
-            pairs.places.store(&mut arrivals.places, index);
             let per_norm = one / pairs.norm;
             let cosine = pairs.cosine * per_norm;
             let sine2 = pairs.squared * (per_norm * per_norm);
@@ -45,6 +44,8 @@ impl<const C: usize> Shade<C> for Shade2d {
             let (first, last) = self.inside(simd, beam, &pairs, cosine);
             let length = last - first;
             let wanted = zero.less(length);
+            // What is not wanted adds nothing to the first pixel, whose cells are at hand.
+            wanted.of(pairs.places).store(&mut arrivals.places, index);
             let path_length = kappa * first - beam.along;
             let mut start = path_length * beam.eta + beam.opl;
             if !PLAIN {

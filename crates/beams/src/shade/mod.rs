@@ -145,8 +145,11 @@ impl<const C: usize> Loaded<C> {
     /// At most [`LANES`] rays; the others end before they begin.
     #[inline(always)]
     fn new<const PLAIN: bool>(rays: &TileRays<'_, C>, given: &[Knot], unwarps: bool) -> Self {
+        // A copy of a length that is not known would be a call.
         let mut knots = [given[0]; LANES];
-        knots[..given.len()].copy_from_slice(given);
+        for (lane, knot) in knots.iter_mut().enumerate() {
+            *knot = given[lane.min(given.len() - 1)];
+        }
         let mut loaded = Self {
             column: [0.0; LANES],
             row: [0.0; LANES],
@@ -167,15 +170,18 @@ impl<const C: usize> Loaded<C> {
             loaded.norm[lane] = ray.norm;
             loaded.start[lane] = ray.start;
             loaded.end[lane] = if lane < given.len() { ray.end } else { -1.0 };
-            if unwarps {
-                loaded.unwarp_opl[lane] = ray.unwarp_opl;
-            }
             if !PLAIN {
                 let before = &rays.before[place];
                 loaded.opl_before[lane] = before.opl;
                 for (loaded, depth) in loaded.depth_before.iter_mut().zip(before.depth) {
                     loaded[lane] = depth;
                 }
+            }
+        }
+        if unwarps {
+            for (lane, &knot) in knots.iter().enumerate() {
+                let place = rays.lattice.place(knot) as usize;
+                loaded.unwarp_opl[lane] = rays.straight[place].unwarp_opl;
             }
         }
         loaded
