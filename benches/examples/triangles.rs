@@ -117,7 +117,7 @@ fn nearest(scene: &Scene, ray: &Segment) -> bool {
 }
 
 fn blocked(scene: &Scene, ray: &Segment) -> bool {
-    scene.connect(&vertex(ray), ray.direction, ray.length, None).is_none()
+    scene.connect::<1>(&vertex(ray), ray.direction, ray.length, None).is_none()
 }
 
 fn single(ray: &Segment, end: f32) -> Ray {

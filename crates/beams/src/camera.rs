@@ -310,10 +310,10 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             }
             let way =
                 self.scene.connect(&path.vertex, light.direction, light.distance, point.primitive);
-            if let Some(flight) = way {
-                let left = flight.transmittance(self.scene, light.distance);
+            if let Some(way) = way {
+                let left = way.transmittance();
                 let energy = reflected * light.flux * left * (cosine / point.pdf);
-                path.deposit(path.opl + flight.opl(light.distance), energy, tile);
+                path.deposit(path.opl + way.opl, energy, tile);
             }
         }
     }

@@ -82,12 +82,12 @@ impl<const C: usize, K: RayBeamKernel> Camera<'_, C, K> {
             }
             let vertex = Vertex { region: towards.region, ..path.vertex };
             let way = self.scene.connect(&vertex, light.direction, light.distance, point.primitive);
-            if let Some(flight) = way {
-                let left: Spectrum<C> = flight.transmittance(self.scene, light.distance);
+            if let Some(way) = way {
+                let left: Spectrum<C> = way.transmittance();
                 let weight = 1.0 / (1.0 + towards.density / (samples * light.pdf_solid_angle));
                 let scale = towards.radiance_factor() * weight * share / (samples * point.pdf);
                 let energy = path.throughput * light.flux * left * towards.value * scale;
-                path.deposit(path.opl + flight.opl(light.distance), energy, tile);
+                path.deposit(path.opl + way.opl, energy, tile);
             }
         }
     }

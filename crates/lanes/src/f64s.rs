@@ -55,6 +55,13 @@ impl<S: Simd> F64s<S> {
         self.0.reduce_min_f64s(self.1)
     }
 
+    /// |self|.
+    #[inline(always)]
+    #[must_use]
+    pub fn abs(self) -> Self {
+        Self(self.0, self.0.abs_f64s(self.1))
+    }
+
     /// √self.
     #[inline(always)]
     #[must_use]
@@ -125,6 +132,13 @@ impl<S: Simd> Mask<S> {
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self(self.0, self.0.and_m64s(self.1, other.1))
+    }
+
+    /// The opposite.
+    #[inline(always)]
+    #[must_use]
+    pub fn not(self) -> Self {
+        Self(self.0, self.0.not_m64s(self.1))
     }
 
     /// `value` where true, `other` elsewhere.

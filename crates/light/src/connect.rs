@@ -87,12 +87,12 @@ impl<'a, const C: usize> Connections<'a, C> {
         }
         self.tested += 1;
         let scene = self.scene;
-        let Some(way) = scene.connect(&source.vertex, seen.direction, seen.distance, None) else {
+        let Some(way) = scene.connect::<C>(&source.vertex, seen.direction, seen.distance, None)
+        else {
             return;
         };
-        let opl = way.opl(seen.distance);
-        let left = way.transmittance::<C>(scene, seen.distance);
-        let energy = intensity * left * seen.importance;
+        let opl = way.opl;
+        let energy = intensity * way.transmittance() * seen.importance;
         if energy.is_zero() {
             return;
         }

@@ -37,10 +37,10 @@ impl<const C: usize> Coefficients<C> {
     }
 }
 
-/// exp(−depth), channel by channel; an infinite depth gives 0.
+/// exp(−depth), channel by channel; an infinite depth gives 0. Nothing in the way costs nothing.
 #[inline]
 pub fn transmittance<const C: usize>(depth: Spectrum<C>) -> Spectrum<C> {
-    depth.map(|d| (-d).exp())
+    if depth.is_zero() { Spectrum::ONE } else { depth.map(|d| (-d).exp()) }
 }
 
 /// Picks a channel with probability proportional to `weights` (which are not all zero); for one

@@ -14,7 +14,6 @@
 
 use glam::DVec3;
 use tpb_optics::Spectrum;
-use tpb_optics::medium::transmittance;
 use tpb_optics::warp::Equiangular;
 use tpb_scene::{Flight, Hit, LightPoint, Vertex};
 use tpb_transport::{FreeFlight, Towards};
@@ -126,7 +125,7 @@ impl<const C: usize> Walk<'_, '_, C> {
         }
         let (direction, distance) = (incident.direction, incident.distance);
         let vertex = Vertex { region: towards.region, ..*vertex };
-        let Some(flight) = scene.connect(&vertex, direction, distance, light.primitive) else {
+        let Some(way) = scene.connect::<C>(&vertex, direction, distance, light.primitive) else {
             return;
         };
         let h = if self.world.strategies.hits {
@@ -134,8 +133,6 @@ impl<const C: usize> Walk<'_, '_, C> {
         } else {
             0.0
         };
-        let depth = flight.depth::<C>(scene, distance);
-        let energy = throughput * transmittance(depth) * weight(h);
-        self.deposit(opl + flight.opl(distance), energy);
+        self.deposit(opl + way.opl, throughput * way.transmittance() * weight(h));
     }
 }

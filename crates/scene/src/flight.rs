@@ -57,6 +57,23 @@ pub struct Flight {
     pub hit: Option<Hit>,
 }
 
+/// What lies on a straight way that no surface is in.
+#[derive(Clone, Copy, Debug)]
+pub struct Connection<const C: usize> {
+    /// Optical path length \[m\].
+    pub opl: f64,
+    /// Optical depth.
+    pub depth: Spectrum<C>,
+}
+
+impl<const C: usize> Connection<C> {
+    /// Its transmittance.
+    #[inline]
+    pub fn transmittance(&self) -> Spectrum<C> {
+        tpb_optics::medium::transmittance(self.depth)
+    }
+}
+
 impl Flight {
     /// Its length \[m\]; infinite when nothing is met.
     #[inline]

@@ -25,7 +25,7 @@ mod world;
 pub use assemble::{AssembleError, EmitterPart, SceneParts, ShapePart};
 pub use bsdf::{Bsdf, Dielectric, Reflector, RoughMetal};
 pub use emitter::{Emission, Emitter, EmitterKind, Incident, LightPoint};
-pub use flight::{Flight, Hit, Span, Vertex};
+pub use flight::{Connection, Flight, Hit, Span, Vertex};
 pub use geometry::Primitive;
 pub use medium::{Medium, MediumBoundary, MediumId, Region};
 pub use plan::{Item, Kernel, Media, Plan, Transport};

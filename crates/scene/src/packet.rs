@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 use tpb_accel::Bvh;
-use tpb_lanes::{F64s, LANES, Simd, Vectors, vectors};
+use tpb_lanes::{F64s, LANES, Mask, Simd, Vectors, vectors};
 
 use crate::Primitive;
 use crate::geometry::{Outline, Planar};
@@ -27,10 +27,10 @@ pub(crate) struct Packet {
     dual_v: Columns,
     /// The primitives' numbers.
     number: [f64; LANES],
-    /// Least coordinate a, b within the outline.
-    least: f64,
-    /// Largest a + b.
-    most: f64,
+    /// How many places are taken, from the first.
+    filled: usize,
+    /// Whether they are triangles.
+    triangles: bool,
 }
 
 /// A ray in all lanes.
@@ -77,7 +77,6 @@ fn dot<S: Simd>(a: [F64s<S>; 3], b: [F64s<S>; 3]) -> F64s<S> {
 impl Packet {
     /// Of primitives of one outline, with their numbers.
     fn new(outline: Outline, members: &[(u32, &Planar)]) -> Self {
-        let (least, most) = if outline == Outline::Triangle { (0.0, 1.0) } else { (-1.0, 2.0) };
         let empty = [[0.0; LANES]; 3];
         let mut packet = Self {
             origin: empty,
@@ -85,8 +84,8 @@ impl Packet {
             dual_u: empty,
             dual_v: empty,
             number: [NOBODY; LANES],
-            least,
-            most,
+            filled: members.len(),
+            triangles: outline == Outline::Triangle,
         };
         for (lane, (number, planar)) in members.iter().enumerate() {
             packet.number[lane] = f64::from(*number);
@@ -105,10 +104,15 @@ impl Packet {
         self.number.vector(simd, index)
     }
 
-    /// Distances in (0, `end`) at which the ray meets the primitives of vector `index`; infinite where it
-    /// does not.
+    /// Whether some place of vector `index` is taken.
     #[inline(always)]
-    fn distances<S: Simd>(&self, index: usize, ray: &RayLanes<S>, end: F64s<S>) -> F64s<S> {
+    fn reaches<S: Simd>(&self, index: usize) -> bool {
+        self.filled > index * (LANES / vectors::<S>())
+    }
+
+    /// Which primitives of vector `index` the ray meets at a distance in (0, `end`), and these distances.
+    #[inline(always)]
+    fn meets<S: Simd>(&self, index: usize, ray: &RayLanes<S>, end: F64s<S>) -> (Mask<S>, F64s<S>) {
         let simd = ray.simd;
         let (o, d) = (ray.origin, ray.direction);
         let origin = columns(&self.origin, simd, index);
@@ -119,13 +123,13 @@ impl Packet {
         let a = dot(local, columns(&self.dual_u, simd, index));
         let b = dot(local, columns(&self.dual_v, simd, index));
         let (zero, one) = (F64s::splat(simd, 0.0), F64s::splat(simd, 1.0));
-        let (least, most) = (F64s::splat(simd, self.least), F64s::splat(simd, self.most));
-        let never = F64s::splat(simd, f64::INFINITY);
+        let within = if self.triangles {
+            zero.at_most(a).and(zero.at_most(b)).and((a + b).at_most(one))
+        } else {
+            a.abs().at_most(one).and(b.abs().at_most(one))
+        };
         let along = zero.less(t).and(t.less(end));
-        let low = least.at_most(a).and(least.at_most(b));
-        let high = a.at_most(one).and(b.at_most(one)).and((a + b).at_most(most));
-        let met = along.and(low).and(high).choose(t, never);
-        self.numbers(simd, index).equals(ray.but).choose(never, met)
+        (along.and(within).and(self.numbers(simd, index).equals(ray.but).not()), t)
     }
 }
 
@@ -198,36 +202,30 @@ impl Leaves {
     }
 }
 
-/// The nearest of all primitives that the ray meets before `end`: its distance and number.
+/// The nearest of all primitives that the ray meets before `end`: its distance and number. Where lanes
+/// are equally near, the smallest number, so that the width of vectors does not matter.
 #[inline(always)]
 pub(crate) fn nearest<S: Simd>(
     packets: &[Packet],
     ray: &RayLanes<S>,
     end: f64,
 ) -> Option<(f64, u32)> {
-    let (mut distances, mut numbers) = ([0.0; LANES], [0.0; LANES]);
-    let mut nearest = end;
+    let never = F64s::splat(ray.simd, f64::INFINITY);
+    let (mut nearest, mut number) = (end, f64::INFINITY);
     for index in 0..vectors::<S>() {
         let mut best = F64s::splat(ray.simd, end);
-        let mut who = F64s::splat(ray.simd, NOBODY);
-        for packet in packets {
-            let t = packet.distances(index, ray, best);
-            let closer = t.less(best);
+        let mut who = never;
+        for packet in packets.iter().filter(|packet| packet.reaches::<S>(index)) {
+            let (closer, t) = packet.meets(index, ray, best);
             who = closer.choose(packet.numbers(ray.simd, index), who);
             best = closer.choose(t, best);
         }
-        best.store(&mut distances, index);
-        who.store(&mut numbers, index);
-        nearest = nearest.min(best.smallest());
+        let closest = best.smallest();
+        let first = best.equals(F64s::splat(ray.simd, closest)).choose(who, never).smallest();
+        number = if closest == nearest { number.min(first) } else { number };
+        (nearest, number) = if closest < nearest { (closest, first) } else { (nearest, number) };
     }
-    if nearest >= end {
-        return None;
-    }
-    let mut number = NOBODY;
-    for lane in (0..LANES).rev() {
-        number = if distances[lane] == nearest { numbers[lane] } else { number };
-    }
-    Some((nearest, number as u32))
+    (nearest < end).then_some((nearest, number as u32))
 }
 
 /// Numbers of the primitives of a packet that the ray meets before `end`, or, if their number is
@@ -240,17 +238,17 @@ pub(crate) fn met<S: Simd>(
     (last, last_end): (f64, f64),
 ) -> Option<[f64; LANES]> {
     let simd = ray.simd;
-    let (nobody, never) = (F64s::splat(simd, NOBODY), F64s::splat(simd, f64::INFINITY));
+    let nobody = F64s::splat(simd, NOBODY);
     let (end, last_end) = (F64s::splat(simd, end), F64s::splat(simd, last_end));
-    let (mut numbers, mut nearest) = ([NOBODY; LANES], f64::INFINITY);
-    for index in 0..vectors::<S>() {
+    let (mut numbers, mut largest) = ([NOBODY; LANES], NOBODY);
+    for index in (0..vectors::<S>()).filter(|&index| packet.reaches::<S>(index)) {
         let number = packet.numbers(simd, index);
         let ends = number.equals(F64s::splat(simd, last)).choose(last_end, end);
-        let t = packet.distances(index, ray, ends);
-        t.less(never).choose(number, nobody).store(&mut numbers, index);
-        nearest = nearest.min(t.smallest());
+        let met = packet.meets(index, ray, ends).0.choose(number, nobody);
+        met.store(&mut numbers, index);
+        largest = largest.max(met.largest());
     }
-    (nearest < f64::INFINITY).then_some(numbers)
+    (largest > NOBODY).then_some(numbers)
 }
 
 #[cfg(test)]

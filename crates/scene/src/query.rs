@@ -17,8 +17,8 @@ pub(crate) const END_TOLERANCE: f64 = 1e-9;
 /// Asks for the nearest primitive within `end`: its distance and number.
 pub(crate) struct Nearest<'a> {
     pub(crate) scene: &'a Scene,
-    pub(crate) from: Vertex,
-    pub(crate) direction: DVec3,
+    pub(crate) from: &'a Vertex,
+    pub(crate) direction: &'a DVec3,
     pub(crate) end: f64,
 }
 
@@ -35,9 +35,9 @@ impl WithSimd for Nearest<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let Self { scene, from, direction, end } = self;
-        let ray = RayLanes::new(simd, from.position, direction, from.primitive);
+        let ray = RayLanes::new(simd, from.position, *direction, from.primitive);
         let mut walk = NearestWalk { asked: self, ray, found: None };
-        scene.bvh.walk(from.position, direction, end, &mut walk);
+        scene.bvh.walk(from.position, *direction, end, &mut walk);
         walk.found
     }
 }
@@ -55,7 +55,7 @@ impl<S: Simd> Visitor for NearestWalk<'_, S> {
             let p = &scene.primitives[index as usize];
             let stands_on = from.primitive == Some(index);
             let end = self.asked.end;
-            if let Some(t) = p.intersect(from.position, direction, end, stands_on) {
+            if let Some(t) = p.intersect(from.position, *direction, end, stands_on) {
                 (self.asked.end, self.found, next) = (t, Some((t, index)), Next::Until(t));
             }
         }
@@ -66,8 +66,8 @@ impl<S: Simd> Visitor for NearestWalk<'_, S> {
 /// Asks what stands between a vertex and a point at distance `end`, which lies on `end_primitive`.
 pub(crate) struct Obstacles<'a> {
     pub(crate) scene: &'a Scene,
-    pub(crate) from: Vertex,
-    pub(crate) direction: DVec3,
+    pub(crate) from: &'a Vertex,
+    pub(crate) direction: &'a DVec3,
     pub(crate) end: f64,
     pub(crate) end_primitive: Option<u32>,
 }
@@ -96,9 +96,9 @@ impl WithSimd for Obstacles<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Obstacle {
         let Self { scene, from, direction, end, .. } = self;
-        let ray = RayLanes::new(simd, from.position, direction, from.primitive);
+        let ray = RayLanes::new(simd, from.position, *direction, from.primitive);
         let mut walk = ObstacleWalk { asked: self, ray, found: Obstacle::None };
-        scene.bvh.walk(from.position, direction, end, &mut walk);
+        scene.bvh.walk(from.position, *direction, end, &mut walk);
         walk.found
     }
 }
@@ -119,7 +119,7 @@ impl<S: Simd> Visitor for ObstacleWalk<'_, S> {
         for &index in single {
             let p = &scene.primitives[index as usize];
             let stands_on = from.primitive == Some(index);
-            let t = p.intersect(from.position, direction, end, stands_on);
+            let t = p.intersect(from.position, *direction, end, stands_on);
             let own_end = end_primitive == Some(index);
             if t.is_some_and(|t| !own_end || t < last_end(end)) && self.blocks(index) {
                 return Next::Stop;

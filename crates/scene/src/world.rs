@@ -9,9 +9,9 @@ use crate::emitter::EmittingSurface;
 use crate::packet::Leaves;
 use crate::query::{END_TOLERANCE, Nearest, Obstacle, Obstacles};
 use crate::{
-    Bsdf, Emission, Emitter, EmitterKind, FilmSpec, Flight, Hit, Incident, IntegratorSpec,
-    LightPoint, Medium, MediumBoundary, MediumId, Primitive, Region, Sensor, Span, Texture,
-    TextureId, Vertex,
+    Bsdf, Connection, Emission, Emitter, EmitterKind, FilmSpec, Flight, Hit, Incident,
+    IntegratorSpec, LightPoint, Medium, MediumBoundary, MediumId, Primitive, Region, Sensor, Span,
+    Texture, TextureId, Vertex,
 };
 
 /// Null boundaries that one flight may cross; more means surfaces that coincide without end.
@@ -93,7 +93,7 @@ impl Scene {
     /// The nearest surface within `t_max`: its distance and primitive.
     #[inline]
     pub fn nearest(&self, from: &Vertex, direction: DVec3, t_max: f64) -> Option<(f64, u32)> {
-        tpb_lanes::dispatch(Nearest { scene: self, from: *from, direction, end: t_max })
+        tpb_lanes::dispatch(Nearest { scene: self, from, direction: &direction, end: t_max })
     }
 
     /// Flies on through null boundaries to the first surface that acts on light.
@@ -106,30 +106,44 @@ impl Scene {
         flight
     }
 
-    /// The flight to a point at `distance`, if no surface but null boundaries lies in between.
+    /// What lies on the way to a point at `distance`, if no surface but null boundaries does.
     /// `end_primitive` is the one that the point lies on.
     #[inline]
-    pub fn connect(
+    pub fn connect<const C: usize>(
         &self,
         from: &Vertex,
         direction: DVec3,
         distance: f64,
         end_primitive: Option<u32>,
-    ) -> Option<Flight> {
-        let (scene, from) = (self, *from);
-        let obstacles = Obstacles { scene, from, direction, end: distance, end_primitive };
-        let obstacle = tpb_lanes::dispatch(obstacles);
-        if obstacle == Obstacle::Surface {
-            return None;
+    ) -> Option<Connection<C>> {
+        let (scene, end) = (self, distance);
+        let obstacles = Obstacles { scene, from, direction: &direction, end, end_primitive };
+        match tpb_lanes::dispatch(obstacles) {
+            Obstacle::Surface => None,
+            Obstacle::None => {
+                let Region { medium, eta } = from.region;
+                let depth = medium.map_or(Spectrum::ZERO, |medium| {
+                    self.medium(medium).coefficients.channels().depth(distance)
+                });
+                Some(Connection { opl: eta * distance, depth })
+            }
+            Obstacle::Boundaries => self.across(from, direction, distance, end_primitive),
         }
+    }
+
+    /// A connection across null boundaries.
+    fn across<const C: usize>(
+        &self,
+        from: &Vertex,
+        direction: DVec3,
+        distance: f64,
+        end_primitive: Option<u32>,
+    ) -> Option<Connection<C>> {
         let mut flight =
             Flight { origin: from.position, direction, spans: SmallVec::new(), hit: None };
-        if obstacle == Obstacle::None {
-            flight.spans.push(Span { start: 0.0, end: distance, region: from.region });
-        } else {
-            flight.hit = self.follow(&from, direction, distance, end_primitive, &mut flight.spans);
-        }
-        flight.hit.is_none().then_some(flight)
+        flight.hit = self.follow(from, direction, distance, end_primitive, &mut flight.spans);
+        let (opl, depth) = (flight.opl(distance), flight.depth(self, distance));
+        flight.hit.is_none().then_some(Connection { opl, depth })
     }
 
     /// Collects spans up to `length` or to the first non-null hit, which is returned.
@@ -156,7 +170,7 @@ impl Scene {
             let position = vertex.position + t * direction;
             let normal = self.primitives[primitive as usize].normal(position);
             let shape = self.shape(primitive);
-            if shape.bsdf != Bsdf::Null {
+            if !matches!(shape.bsdf, Bsdf::Null) {
                 return Some(Hit { distance: end, primitive, position, normal });
             }
             vertex.region = self.region_beyond(shape, direction.dot(normal) > 0.0, vertex.region);
@@ -267,6 +281,7 @@ impl Scene {
         self.emitters.iter().map(|e| e.kind.power()).sum()
     }
 
+    #[inline]
     fn pick_on_surface(
         &self,
         emitter: usize,
@@ -299,10 +314,10 @@ impl Choice {
 
     #[inline]
     fn pick(&self, rng: &mut Stream) -> Option<(usize, f64)> {
-        let last = self.probabilities.iter().rposition(|&p| p > 0.0)?;
-        if self.probabilities.len() == 1 {
-            return Some((0, 1.0));
+        if let [only] = self.probabilities[..] {
+            return (only > 0.0).then_some((0, 1.0));
         }
+        let last = self.probabilities.iter().rposition(|&p| p > 0.0)?;
         let mut rest = rng.uniform();
         for (index, &p) in self.probabilities[..last].iter().enumerate() {
             if rest < p {

@@ -231,10 +231,10 @@ fn a_flight_keeps_every_span_and_its_optical_length() {
     assert!(flight.hit.is_some());
     // A connection ends before the wall, sees the wall in its way, and may end on the wall.
     let eye = scene.eye();
-    assert!(scene.connect(&eye, DVec3::Z, 7.9, None).is_some());
-    assert!(scene.connect(&eye, DVec3::Z, 8.1, None).is_none());
+    assert!(scene.connect::<1>(&eye, DVec3::Z, 7.9, None).is_some());
+    assert!(scene.connect::<1>(&eye, DVec3::Z, 8.1, None).is_none());
     let hit = flight.hit.unwrap();
-    assert!(scene.connect(&eye, DVec3::Z, 8.0, Some(hit.primitive)).is_some());
+    assert!(scene.connect::<1>(&eye, DVec3::Z, 8.0, Some(hit.primitive)).is_some());
     // From the fog's own boundary inwards: the far side of the ball is met, the near one not.
     let on_ball = Vertex {
         position: DVec3::new(0.0, 0.0, -2.0),

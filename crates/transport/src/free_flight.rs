@@ -166,7 +166,7 @@ impl<'a, const C: usize> FreeFlight<'a, C> {
     #[inline]
     pub fn left(&self, distance: f64) -> (Spectrum<C>, Spectrum<C>) {
         let (scattering, absorbing) = self.depths(distance);
-        (relative_transmittance(scattering, self.mixture), absorption(absorbing))
+        (relative_transmittance(scattering, self.mixture), transmittance(absorbing))
     }
 
     /// Weights of a path that collides at `distance`.
@@ -241,12 +241,6 @@ fn albedo<const C: usize>(c: &Coefficients<C>) -> Spectrum<C> {
     Spectrum(std::array::from_fn(|i| {
         if c.sigma_t[i] == 0.0 { 0.0 } else { c.sigma_s[i] / c.sigma_t[i] }
     }))
-}
-
-/// Transmittance of media that only absorb: nearly always there are none on the way.
-#[inline]
-fn absorption<const C: usize>(depth: Spectrum<C>) -> Spectrum<C> {
-    if depth.is_zero() { Spectrum::ONE } else { transmittance(depth) }
 }
 
 #[cfg(test)]
