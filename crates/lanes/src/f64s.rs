@@ -1,6 +1,6 @@
 //! Vectors of f64.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Not, Sub};
 
 use crate::{LANES, Simd, Vectors, operators};
 
@@ -126,19 +126,22 @@ impl<S: Simd> F64s<S> {
     }
 }
 
+impl<S: Simd> Not for Mask<S> {
+    type Output = Self;
+
+    /// The opposite.
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(self.0, self.0.not_m64s(self.1))
+    }
+}
+
 impl<S: Simd> Mask<S> {
     /// Both.
     #[inline(always)]
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self(self.0, self.0.and_m64s(self.1, other.1))
-    }
-
-    /// The opposite.
-    #[inline(always)]
-    #[must_use]
-    pub fn not(self) -> Self {
-        Self(self.0, self.0.not_m64s(self.1))
     }
 
     /// `value` where true, `other` elsewhere.

@@ -129,7 +129,7 @@ impl Packet {
             a.abs().at_most(one).and(b.abs().at_most(one))
         };
         let along = zero.less(t).and(t.less(end));
-        (along.and(within).and(self.numbers(simd, index).equals(ray.but).not()), t)
+        (along.and(within).and(!self.numbers(simd, index).equals(ray.but)), t)
     }
 }
 
