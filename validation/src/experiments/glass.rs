@@ -28,7 +28,7 @@ use crate::contrasts::standard;
 use crate::cube::Cube;
 use crate::error::Result;
 use crate::experiment::{Context, Effort, Experiment, Kind, Outcome};
-use crate::experiments::screen::{Sequence, blocks};
+use crate::experiments::screen::blocks;
 use crate::experiments::sights::across;
 use crate::measure::{BatchPlan, Estimator, batches};
 use crate::registry::Experiments;
@@ -42,7 +42,8 @@ const FOV: f64 = 50.0;
 const LAMP: f64 = 0.6;
 const NULL_RADIUS: f64 = 0.25;
 const RADIUS: f64 = 0.25;
-const POINTS: usize = 64;
+/// Rays of the expectation along a pixel's edge.
+const GRID: usize = 16;
 const TIME: TimeSpec = TimeSpec { start_opl: 0.15, bin_width_opl: 0.225, bins: 40 };
 
 /// Who looks.
@@ -150,18 +151,20 @@ impl GlassFog {
         Ok(value?)
     }
 
-    fn expected(self, scene: &Scene, points: usize) -> Result<Cube> {
+    /// The mean over pixels by the midpoint rule: what `grid` rays along an edge miss is a third of what they
+    /// differ by from half as many.
+    fn expected(self, scene: &Scene, grid: usize) -> Result<Cube> {
         let mut cube = Cube::zero(SIDE, SIDE, TIME.bins);
         let pixel = |pixel: usize| -> Result<Vec<f64>> {
             let mut bins = vec![0.0; TIME.bins];
-            let sequence = Sequence::new(2, pixel);
             let (column, row) = ((pixel % SIDE) as f64, (pixel / SIDE) as f64);
-            for index in 0..points {
-                let (x, y) = (column + sequence.at(index, 0), row + sequence.at(index, 1));
+            let middle = |step: usize| (step as f64 + 0.5) / grid as f64;
+            for index in 0..grid * grid {
+                let (x, y) = (column + middle(index % grid), row + middle(index / grid));
                 let alpha = scene.sensor.direction(x, y).x.acos();
                 for (index, bin) in bins.iter_mut().enumerate() {
                     let edge = |i: usize| TIME.start_opl + i as f64 * TIME.bin_width_opl;
-                    *bin += self.bin(alpha, edge(index), edge(index + 1))? / points as f64;
+                    *bin += self.bin(alpha, edge(index), edge(index + 1))? / (grid * grid) as f64;
                 }
             }
             Ok(bins)
@@ -195,8 +198,7 @@ impl Experiment for GlassFog {
 
     fn run(&self, context: &Context) -> Result<Outcome> {
         let scene = Self::scene(context)?;
-        let (expected, coarser) =
-            (self.expected(&scene, POINTS)?, self.expected(&scene, POINTS / 2)?);
+        let (expected, coarser) = (self.expected(&scene, GRID)?, self.expected(&scene, GRID / 2)?);
         let path = self.who == Diver::Path;
         let shares = 3;
         let contrasts = standard(&expected, &blocks((SIDE, SIDE), (2, 1)), shares);
