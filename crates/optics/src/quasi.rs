@@ -4,12 +4,12 @@
 //! ones, and each point alone is uniform: means stay unbiased (Owen 1995; by hashing: Burley 2020,
 //! "Practical Hash-based Owen Scrambling"). Sequences of different seeds are independent.
 
-use crate::rng::{Stream, seed_of};
+use crate::rng::{LONGEST_LEAD, Stream, seed_of};
 
 /// Points of one sequence; a longer one begins another.
 const LONGEST: u64 = 1 << 16;
-/// The step of f32 in [0.5, 1).
-const STEP: f64 = 1.0 / (1_u64 << 24) as f64;
+/// What the sequence's coordinates are multiples of: they have 23 bits.
+const STEP: f64 = 1.0 / (1_u64 << 23) as f64;
 
 /// Coordinates of a point that [`Points`] gives at once.
 pub const TOGETHER: usize = 4;
@@ -28,12 +28,28 @@ impl Points {
     }
 
     /// Coordinates 4 `set` to 4 `set` + 3 of point `index`, in [0, 1); `set` is below [`SETS`]. `fill` draws
-    /// what lies below the 24 bits of the sequence.
+    /// what lies below the bits of the sequence.
     #[inline]
     pub fn at(self, index: u64, set: u32, fill: &mut Stream) -> [f64; TOGETHER] {
         let seed = seed_of(self.0, index / LONGEST) as u32;
         let point = sobol_burley::sample_4d((index % LONGEST) as u32, set, seed);
-        point.map(|coordinate| f64::from(coordinate) + STEP * fill.uniform())
+        let mut all = [0.0; TOGETHER];
+        for (exact, coordinate) in all.iter_mut().zip(point) {
+            *exact = f64::from(coordinate) + STEP * fill.uniform();
+        }
+        all
+    }
+
+    /// Makes the first [`LONGEST_LEAD`] coordinates of point `index` the next numbers of a stream.
+    #[inline]
+    pub fn lead(self, index: u64, rng: &mut Stream) {
+        // What was left of an earlier lead fills nothing.
+        rng.lead(&[]);
+        let mut numbers = [0.0; LONGEST_LEAD];
+        for (set, of_set) in (0..).zip(numbers.chunks_exact_mut(TOGETHER)) {
+            of_set.copy_from_slice(&self.at(index, set, rng));
+        }
+        rng.lead(&numbers);
     }
 }
 

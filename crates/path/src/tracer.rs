@@ -3,13 +3,13 @@
 use std::num::NonZeroU32;
 
 use tpb_film::{Ledger, Tile, TransientFilm};
-use tpb_optics::Stream;
+use tpb_optics::quasi::Points;
+use tpb_optics::{Stream, seed_of};
 use tpb_render::{Counts, Method, PassId, PassReport};
 use tpb_scene::{IntegratorSpec, Media, Plan, Scene, Transport};
 use tpb_transport::Horizon;
 
 use crate::PathOptions;
-use crate::options::grid;
 use crate::walk::Walk;
 use crate::world::{Strategies, World};
 
@@ -50,14 +50,13 @@ impl<'a, const C: usize> PathTracer<'a, C> {
         tile: &mut Tile<'_, C>,
     ) -> Ledger {
         let mut ledger = Ledger::default();
-        let (columns, rows) = grid(self.samples);
         for pixel in tile.pixels() {
             let mut rng = Stream::new(id.seed, id.index, pixel as u64);
-            let corner = ((pixel % width) as f64, (pixel / width) as f64);
+            let points = Points::new(seed_of(seed_of(id.seed, id.index), pixel as u64));
             for sample in 0..self.samples.get() {
-                let (column, row) = (sample % columns, sample / columns);
-                let x = corner.0 + (f64::from(column) + rng.uniform()) / f64::from(columns);
-                let y = corner.1 + (f64::from(row) + rng.uniform()) / f64::from(rows);
+                points.lead(u64::from(sample), &mut rng);
+                let x = (pixel % width) as f64 + rng.uniform();
+                let y = (pixel / width) as f64 + rng.uniform();
                 let direction = world.scene.sensor.direction(x, y);
                 Walk::new(world, direction, &mut rng, &mut ledger, (&mut *tile, pixel)).run();
             }

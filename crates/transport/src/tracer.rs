@@ -23,7 +23,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use tpb_film::Ledger;
-use tpb_optics::quasi::{Points, TOGETHER};
+use tpb_optics::quasi::Points;
 use tpb_optics::{Spectrum, Stream, seed_of};
 use tpb_scene::{Flight, Hit, IntegratorSpec, Scene, Vertex};
 
@@ -32,9 +32,6 @@ use crate::{
     Carrier, Encounter, FreeFlight, Horizon, Lobe, Outcome, Part, Photon, Response, RoughLobe,
     SurfaceArrival,
 };
-
-/// Of each photon so many numbers, from its emission on, are quasi-random.
-const LEAD: usize = 2 * TOGETHER;
 
 /// Photons per parallel task; the division does not depend on threads.
 const CHUNK: u64 = 512;
@@ -115,7 +112,8 @@ pub enum Sampler {
     /// Independent of one another.
     #[default]
     Independent,
-    /// Spread evenly over emitters, directions and flights: a scrambled Sobol sequence.
+    /// Spread evenly over emitters, directions and flights: their first numbers are those of a
+    /// scrambled Sobol sequence.
     Sobol,
 }
 
@@ -161,7 +159,7 @@ impl PhotonTracer<'_> {
                 for index in photons {
                     let mut rng = Stream::new(seed, pass, index);
                     if self.sampling.sampler == Sampler::Sobol {
-                        lead(points, index, &mut rng);
+                        points.lead(index, &mut rng);
                     }
                     walk.photon::<C>(index, 1.0 / count as f64, &mut rng);
                 }
@@ -175,16 +173,6 @@ impl PhotonTracer<'_> {
         });
         (visitors.collect(), ledger)
     }
-}
-
-/// A photon's first numbers: its emitter and place there, its direction, and how far it flies.
-#[inline]
-fn lead(points: Points, index: u64, rng: &mut Stream) {
-    let mut numbers = [0.0; LEAD];
-    for (set, of_set) in (0..).zip(numbers.chunks_exact_mut(TOGETHER)) {
-        of_set.copy_from_slice(&points.at(index, set, rng));
-    }
-    rng.lead(&numbers);
 }
 
 /// One chunk's walk.
