@@ -87,7 +87,7 @@ impl EqualTimeRun {
             methods: vec![self.referee.estimator(), Estimator::Beams(BeamOptions::default())],
             control: self.control,
             time: Duration::from_secs(context.effort.pick(6, self.full_seconds)),
-            replicates: context.effort.pick(5, 8),
+            replicates: context.effort.pick(5, 16),
             seed: context.seed,
         };
         Ok((plan.run()?, note))
